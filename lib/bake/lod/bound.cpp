@@ -15,6 +15,9 @@ constexpr size_t FIRST = 2048;
  * more triangles, at double their errors are 40 to 100 % larger (bunny; dragon of 810,080: a fifth,
  * 9 %, 3 to 60). */
 constexpr double OUTLYING = 6;
+/* A finer level is of use up to so much of the distance that matters: a cook of the dragon takes
+ * 3 % more instructions at a third of it, and at 0.85. */
+constexpr double MAX_KNOWN = 0.75;
 
 /* Those of the boxes that touch another; all of space touches it where `near` is null. */
 class Near {
@@ -36,8 +39,8 @@ private:
     Vector<gtx::Box> boxes_;
 };
 
-/* `counts(t)`: whether triangle t of `from` is to be near. Of parts that touch none of the boxes
- * nothing is asked, where there are any. */
+/* `counts(t)`: whether triangle t of `from` is to be near. Nothing is asked of what touches none of
+ * the boxes, where there are any. */
 template <class Counts>
 static double greatest(const SortedSurface &from, const Counts &counts, const FarSearch &start,
                        const Vector<gtx::Box> *boxes, Task &task)
@@ -80,6 +83,19 @@ static Vector<FarPoint> all_far(const SortedSurface &from, const Counts &counts,
     return all;
 }
 
+/* Which triangles are not sure to be within that distance of another surface. */
+static Vector<uint8_t> unsure_of(const SortedSurface &from, const SortedSurface &to, double within,
+                                 Task &task)
+{
+    Vector<uint8_t> unsure(from.size(), 0);
+    task.parallel(from.tree().parts(), [&](size_t part) {
+        FarSearch search = {to, within, 0};
+        from.tree().visit(part, [&](const gtx::Box &box) { return search.is_covered(box); },
+                          [&](uint32_t t) { unsure[t] = !search.is_within(from.corners(t)); });
+    }, 1, 1);
+    return unsure;
+}
+
 /* The first points: their greatest distance, and the root of the mean square. */
 template <class Counts>
 static Strayed sample(const SortedSurface &from, const Counts &counts, const FarSearch &start,
@@ -107,91 +123,47 @@ static Strayed sample(const SortedSurface &from, const Counts &counts, const Far
     return out;
 }
 
-Bounds::Bounds(const LodSource &source, Task &task)
-    : task_(task), patch_(source.patch),
-      source_(source.positions, source.triangles, task, 0),
+BoundSource::BoundSource(const LodSource &source, Task &task)
+    : patch_(source.patch), surface_(source.positions, source.triangles, task, 0),
       parts_(part_sizes(source.positions, source.triangles)),
       largest_part_(*std::max_element(parts_.begin(), parts_.end()))
 {
 }
 
-bool Bounds::is_shown(uint32_t triangle, double speck) const
+bool BoundSource::is_shown(uint32_t triangle, double speck) const
 {
-    return parts_[source_.given(triangle)] > speck || largest_part_ <= speck;
+    return parts_[surface_.given(triangle)] > speck || largest_part_ <= speck;
 }
 
-/* What of a mesh becomes a level, and which triangles of it that is. */
-struct Bounds::LevelSurface {
-    Vector<uint32_t> number;
-    SortedSurface surface;
-
-    LevelSurface(const LevelMesh &mesh, const Lattice &lattice, Task &task)
-        : number(stored(mesh)), surface(points(mesh, lattice), triangles(mesh, number), task, 1)
-    {
-    }
-    uint32_t of_mesh(uint32_t triangle) const { return number[surface.given(triangle)]; }
-
-private:
-    static Vector<uint32_t> stored(const LevelMesh &mesh)
-    {
-        Vector<uint32_t> out;
-        for (uint32_t t = 0; t < mesh.triangles.size(); ++t)
-            if (mesh.patch[t] != NO_PATCH && !mesh.collapses(mesh.triangles[t]))
-                out.push_back(t);
-        return out;
-    }
-    static Vector<Vec3d> points(const LevelMesh &mesh, const Lattice &lattice)
-    {
-        Vector<Vec3d> out;
-        for (const Place &place : mesh.places)
-            out.push_back(lattice.point(place));
-        return out;
-    }
-    static Vector<Triangle> triangles(const LevelMesh &mesh, const Vector<uint32_t> &number)
-    {
-        Vector<Triangle> out;
-        for (uint32_t t : number)
-            out.push_back(mesh.triangles[t]);
-        return out;
-    }
-};
-
-Spots Bounds::spots(const LevelMesh &mesh, const Lattice &lattice, double speck,
-                    double least) const
+static Vector<uint32_t> stored_triangles(const LevelMesh &mesh)
 {
-    task_.limits.work_again(); /* large sources take several looks a triangle at each level */
-    const LevelSurface level(mesh, lattice, task_);
-    const auto shown = [&](uint32_t t) { return is_shown(t, speck); };
-    FarSearch there = {level.surface, 0, 0};
-    Spots out;
-    out.rms = sample(source_, shown, there, task_).rms;
-    out.most = there.free = std::max(least, OUTLYING * out.rms);
-    out.points = all_far(source_, shown, there, [&](uint32_t t, const FarPlace &place) {
-        return FarPoint{place.at, source_.corners(t), patch_[source_.given(t)],
-                        level.of_mesh(place.near), place.away};
-    }, task_);
+    Vector<uint32_t> out;
+    for (uint32_t t = 0; t < mesh.triangles.size(); ++t)
+        if (mesh.patch[t] != NO_PATCH && !mesh.collapses(mesh.triangles[t]))
+            out.push_back(t);
     return out;
 }
 
-Spots Bounds::spots_of(const LevelMesh &mesh, const Lattice &lattice, double least) const
+static Vector<Vec3d> points_of(const LevelMesh &mesh, const Lattice &lattice)
 {
-    task_.limits.work_again();
-    const LevelSurface level(mesh, lattice, task_);
-    const FarSearch back = {source_, least / LOOSE, 0};
-    const auto any = [](uint32_t) { return true; };
-    Spots out;
-    out.of_level = true;
-    out.most = least;
-    out.points =
-        all_far(level.surface, any, back, [&](uint32_t t, const FarPlace &place) {
-            const Corners c = source_.corners(place.near);
-            const auto [x, y, z] = nearest_shares(c, place.at);
-            const uint32_t number = level.of_mesh(t);
-            return FarPoint{c[0] * x + c[1] * y + c[2] * z, c, patch_[source_.given(place.near)],
-                            number, place.away,
-                            place.corner < 0 ? NO_VERTEX : mesh.triangles[number][place.corner]};
-        }, task_);
+    Vector<Vec3d> out;
+    for (const Place &place : mesh.places)
+        out.push_back(lattice.point(place));
     return out;
+}
+
+static Vector<Triangle> triangles_of(const LevelMesh &mesh, const Vector<uint32_t> &number)
+{
+    Vector<Triangle> out;
+    for (uint32_t t : number)
+        out.push_back(mesh.triangles[t]);
+    return out;
+}
+
+LevelSurface::LevelSurface(const LevelMesh &mesh, const Lattice &lattice, Task &task)
+    : number(stored_triangles(mesh)),
+      surface(points_of(mesh, lattice), triangles_of(mesh, number), task, 1)
+{
 }
 
 static gtx::Box box_around(const Corners &corners, double beyond)
@@ -204,8 +176,61 @@ static gtx::Box box_around(const Corners &corners, double beyond)
     return box;
 }
 
-double Bounds::after(const LevelMesh &mesh, const Lattice &lattice, double speck,
-                     const Spots &spots, const Vector<Corners> &changed) const
+LevelBound::LevelBound(const BoundSource &source, const LevelMesh &mesh, const Lattice &lattice,
+                       double speck, const Vector<BoundedLevel> &finer, Task &task)
+    : source_(source), mesh_(mesh), lattice_(lattice), speck_(speck),
+      finer_(finer), task_(task), level_(std::make_unique<LevelSurface>(mesh, lattice, task))
+{
+}
+
+Spots LevelBound::spots(double least) const
+{
+    task_.limits.work_again(); /* large sources take several looks a triangle at each level */
+    const auto shown = [&](uint32_t t) { return is_shown(t); };
+    FarSearch there = {level_->surface, 0, 0};
+    Spots out;
+    out.rms = sample(source_.surface(), shown, there, task_).rms;
+    out.most = there.free = std::max(least, OUTLYING * out.rms);
+    out.points = all_far(source_.surface(), shown, there, [&](uint32_t t, const FarPlace &place) {
+        return FarPoint{place.at, source_.surface().corners(t), source_.patch_of(t),
+                        level_->of_mesh(place.near), place.away};
+    }, task_);
+    return out;
+}
+
+/* Where a finer level is near enough, its source is: distances add up, and fewer triangles lie
+ * over each. */
+Vector<uint8_t> LevelBound::may_be_far(double within) const
+{
+    const SortedSurface &level = level_->surface;
+    for (auto finer = finer_.rbegin(); finer != finer_.rend(); ++finer)
+        if (finer->away <= MAX_KNOWN * within)
+            return unsure_of(level, finer->level->surface, within - finer->away, task_);
+    return Vector<uint8_t>(level.size(), 1);
+}
+
+Spots LevelBound::spots_of(double least) const
+{
+    task_.limits.work_again();
+    const SortedSurface &level = level_->surface;
+    const FarSearch back = {source_.surface(), least / LOOSE, 0};
+    const Vector<uint8_t> unsure = may_be_far(back.free);
+    Spots out;
+    out.of_level = true;
+    out.most = least;
+    out.points = all_far(level, [&](uint32_t t) { return unsure[t]; }, back,
+                         [&](uint32_t t, const FarPlace &place) {
+        const Corners c = source_.surface().corners(place.near);
+        const auto [x, y, z] = nearest_shares(c, place.at);
+        const uint32_t number = level_->of_mesh(t);
+        return FarPoint{c[0] * x + c[1] * y + c[2] * z, c, source_.patch_of(place.near), number,
+                        place.away,
+                        place.corner < 0 ? NO_VERTEX : mesh_.triangles[number][place.corner]};
+    }, task_);
+    return out;
+}
+
+double LevelBound::after(const Spots &spots, const Vector<Corners> &changed)
 {
     if (spots.points.empty())
         return spots.most;
@@ -215,38 +240,42 @@ double Bounds::after(const LevelMesh &mesh, const Lattice &lattice, double speck
     for (const FarPoint &p : spots.points) {
         boxes.push_back(box_around(p.source, spots.most));
         boxes.push_back(
-            box_around(mesh.corners(mesh.triangles[p.near], lattice), spots.most));
+            box_around(mesh_.corners(mesh_.triangles[p.near], lattice_), spots.most));
     }
-    const LevelSurface level(mesh, lattice, task_);
+    level_ = std::make_unique<LevelSurface>(mesh_, lattice_, task_);
     const auto any = [](uint32_t) { return true; };
-    const auto shown = [&](uint32_t t) { return is_shown(t, speck); };
-    FarSearch there = {level.surface, spots.most, 0};
-    there.found = greatest(source_, shown, there, &boxes, task_);
+    const auto shown = [&](uint32_t t) { return is_shown(t); };
+    FarSearch there = {level_->surface, spots.most, 0};
+    there.found = greatest(source_.surface(), shown, there, &boxes, task_);
     if (spots.of_level) {
-        const FarSearch back = {source_, spots.most / LOOSE, there.found};
-        there.found = greatest(level.surface, any, back, &boxes, task_);
+        const FarSearch back = {source_.surface(), spots.most / LOOSE, there.found};
+        there.found = greatest(level_->surface, any, back, &boxes, task_);
     }
     return there.most();
 }
 
-Strayed Bounds::of(const LevelMesh &mesh, const Lattice &lattice, double speck) const
+Strayed LevelBound::whole() const
 {
     task_.limits.work_again();
-    const LevelSurface level(mesh, lattice, task_);
     const auto any = [](uint32_t) { return true; };
-    const auto shown = [&](uint32_t t) { return is_shown(t, speck); };
-    FarSearch there = {level.surface, double(lattice.step) / 2, 0};
-    FarSearch back = {source_, double(lattice.step) / 2, 0};
-    Strayed out = sample(source_, shown, there, task_);
-    back.found = std::max(out.most, sample(level.surface, any, back, task_).most);
+    const auto shown = [&](uint32_t t) { return is_shown(t); };
+    FarSearch there = {level_->surface, double(lattice_.step) / 2, 0};
+    FarSearch back = {source_.surface(), double(lattice_.step) / 2, 0};
+    Strayed out = sample(source_.surface(), shown, there, task_);
+    back.found = std::max(out.most, sample(level_->surface, any, back, task_).most);
     task_.limits.work_again();
     /* The source first: it takes less, and its spots spare the level most of its looks. */
     there.found = back.found;
-    back.found = greatest(source_, shown, there, nullptr, task_);
+    back.found = greatest(source_.surface(), shown, there, nullptr, task_);
     task_.limits.work_again();
-    there.found = greatest(level.surface, any, back, nullptr, task_);
+    there.found = greatest(level_->surface, any, back, nullptr, task_);
     out.most = there.most();
     return out;
+}
+
+BoundedLevel LevelBound::bounded(double away) &&
+{
+    return {std::move(level_), away};
 }
 
 } // namespace gtx::baking

@@ -4,6 +4,8 @@
 #include "bake/lod/far_search.hpp"
 #include "bake/lod/spots.hpp"
 
+#include <memory>
+
 namespace gtx::baking {
 
 /* Object units. */
@@ -21,32 +23,68 @@ struct Spots {
     double rms = 0;              /* as in Strayed; of the source */
 };
 
-class Bounds {
+/* The source, which outlives it. */
+class BoundSource {
 public:
-    /* `source` outlives it. */
-    Bounds(const LodSource &source, Task &task);
+    BoundSource(const LodSource &source, Task &task);
 
-    /* Of a level. Parts of the source that are no longer than `speck` need not be in it. */
-    Strayed of(const LevelMesh &mesh, const Lattice &lattice, double speck) const;
-    /* What of the source is farther from it than `least`, and much farther than the rest. */
-    Spots spots(const LevelMesh &mesh, const Lattice &lattice, double speck, double least) const;
-    /* What of it is farther from the source than `least`. */
-    Spots spots_of(const LevelMesh &mesh, const Lattice &lattice, double least) const;
-    /* A bound, after what lay there was changed: of the source, and of the level where they were
-     * of that, if it was bounded elsewhere by as much as theirs. */
-    double after(const LevelMesh &mesh, const Lattice &lattice, double speck, const Spots &spots,
-                 const Vector<Corners> &changed) const;
+    /* Parts that are no longer than `speck` need not be in a level. */
+    bool is_shown(uint32_t triangle, double speck) const;
+    uint32_t patch_of(uint32_t triangle) const { return patch_[surface_.given(triangle)]; }
+    const SortedSurface &surface() const { return surface_; }
 
 private:
-    struct LevelSurface;
-
-    bool is_shown(uint32_t triangle, double speck) const;
-
-    Task &task_;
     const Vector<uint32_t> &patch_;
-    SortedSurface source_;
+    SortedSurface surface_;
     Vector<double> parts_;       /* how long the connected part of each triangle given is */
     double largest_part_;
+};
+
+/* What of a mesh becomes a level, and which triangles of it that is. */
+struct LevelSurface {
+    Vector<uint32_t> number;
+    SortedSurface surface;
+
+    LevelSurface(const LevelMesh &mesh, const Lattice &lattice, Task &task);
+    uint32_t of_mesh(uint32_t triangle) const { return number[surface.given(triangle)]; }
+};
+
+/* A level, and within which distance of the source all of it is. */
+struct BoundedLevel {
+    std::unique_ptr<const LevelSurface> level;
+    double away;
+};
+
+/* Bounds a level while it is mended. */
+class LevelBound {
+public:
+    /* `finer` are those before it, the finest first. All outlive it. */
+    LevelBound(const BoundSource &source, const LevelMesh &mesh, const Lattice &lattice,
+               double speck, const Vector<BoundedLevel> &finer, Task &task);
+
+    /* Of all. */
+    Strayed whole() const;
+    /* What of the source is farther from it than `least`, and much farther than the rest. */
+    Spots spots(double least) const;
+    /* What of it is farther from the source than `least`. */
+    Spots spots_of(double least) const;
+    /* A bound, after what lay there was changed: of the source, and of the level where they were
+     * of that, if it was bounded elsewhere by as much as theirs. */
+    double after(const Spots &spots, const Vector<Corners> &changed);
+    /* At last, with what was found. */
+    BoundedLevel bounded(double away) &&;
+
+private:
+    bool is_shown(uint32_t t) const { return source_.is_shown(t, speck_); }
+    Vector<uint8_t> may_be_far(double within) const;
+
+    const BoundSource &source_;
+    const LevelMesh &mesh_;
+    const Lattice &lattice_;
+    const double speck_;
+    const Vector<BoundedLevel> &finer_;
+    Task &task_;
+    std::unique_ptr<const LevelSurface> level_;
 };
 
 } // namespace gtx::baking

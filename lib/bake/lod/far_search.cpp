@@ -26,6 +26,28 @@ bool FarSearch::is_covered_whole(const Corners &c)
     return true;
 }
 
+bool FarSearch::is_within(FarCorner &a, FarCorner &b, FarCorner &c)
+{
+    cancel_point();
+    if (is_covered(a, b, c) || was_covered(a, b, c))
+        return true;
+    const Corners corners = {a.at, b.at, c.at};
+    const Vec3d middle = (a.at + b.at + c.at) / 3;
+    const double radius = radius_of(corners, middle), enough = free - radius;
+    if (enough > 0) {
+        const double away = distance(middle, enough);
+        if (away <= enough || is_covered(a, b, c))
+            return true;
+        if (away > free || away + radius <= LOOSE * free)
+            return false;
+    } else if (free * free < MANY * to.mean_area() && is_covered_whole(corners)) {
+        return true;
+    }
+    FarCorner x = {(b.at + c.at) / 2}, y = {(c.at + a.at) / 2}, z = {(a.at + b.at) / 2};
+    return is_within(x, y, z) && is_within(a, z, y) && is_within(z, b, x) &&
+           is_within(y, x, c);
+}
+
 void FarSearch::look(FarCorner &a, FarCorner &b, FarCorner &c)
 {
     cancel_point();

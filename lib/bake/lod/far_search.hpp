@@ -200,6 +200,13 @@ struct FarSearch {
         }
         return inside;
     }
+    /* Whether all of a triangle is sure to be within `free`; what may be by little is not. */
+    bool is_within(const Corners &c)
+    {
+        FarCorner a = {c[0]}, b = {c[1]}, d = {c[2]};
+        return is_within(a, b, d);
+    }
+    bool is_within(FarCorner &a, FarCorner &b, FarCorner &c);
     void look(const Corners &c)
     {
         FarCorner a = {c[0]}, b = {c[1]}, d = {c[2]};

@@ -129,31 +129,32 @@ private:
 /* Gives vertices to the few spots that a level is far from, which would set its error, and says how
  * far it strays then. The source first: it takes less, and what is left of its spots spares most
  * looks at the level. Triangles lie in their patches. */
-static Strayed mend(const LodJob &job, const Bounds &bounds, LevelMesh &mesh, double speck)
+static Strayed mend(const LodJob &job, LevelBound &bound, LevelMesh &mesh)
 {
-    const Lattice &lattice = job.lattice;
     auto reach = [&](const Spots &spots) {
-        const auto changed = reach_spots(mesh, spots.points, spots.most, job.regions, lattice);
-        return bounds.after(mesh, lattice, speck, spots, changed);
+        return bound.after(spots, reach_spots(mesh, spots.points, spots.most, job.regions,
+                                              job.lattice));
     };
-    const Spots spots = bounds.spots(mesh, lattice, speck, lattice.step / 2);
+    const Spots spots = bound.spots(job.lattice.step / 2);
     if (spots.points.empty())
-        return bounds.of(mesh, lattice, speck);
-    return {reach(bounds.spots_of(mesh, lattice, reach(spots))), spots.rms};
+        return bound.whole();
+    return {reach(bound.spots_of(reach(spots))), spots.rms};
 }
 
 /* Finds out how far levels stray: one says no less than a finer one, and than the specks that it
  * misses. */
 static void find_errors(const LodJob &job, Line &line)
 {
-    const Bounds bounds(job.source, job.task);
-    float finer = 0;
+    const BoundSource source(job.source, job.task);
+    Vector<BoundedLevel> finer;
+    float told = 0;
     for (size_t k = 0; MadeLevel *level = line.at(k, job.task); ++k) {
-        const Strayed strayed = level->far ? bounds.of(level->mesh, job.lattice, level->speck)
-                                           : mend(job, bounds, level->mesh, level->speck);
+        LevelBound bound(source, level->mesh, job.lattice, level->speck, finer, job.task);
+        const Strayed strayed = level->far ? bound.whole() : mend(job, bound, level->mesh);
         const float most = float(std::max(strayed.most, level->speck));
-        level->error = finer = std::max(finer, std::nextafter(most, INFINITY));
+        level->error = told = std::max(told, std::nextafter(most, INFINITY));
         level->rms = float(strayed.rms);
+        finer.push_back(std::move(bound).bounded(strayed.most));
     }
 }
 
