@@ -88,8 +88,10 @@ static gtx_result derive_patch(const making *m, uint32_t i, gtx_derived *derived
         derived->slabs_at[k] = gtx_model_slabs_at(model, i, k);
         derived->slab_texels[k] = (gtx_slab_texel *)m->records + derived->slabs_at[k];
     }
-    derived->blocks = model->blocks + model->first_slab[i];
-    derived->nodes = model->nodes + model->first_node[i];
+    if (!m->asset->bare) {
+        derived->blocks = model->blocks + model->first_slab[i];
+        derived->nodes = model->nodes + model->first_node[i];
+    }
     for (uint32_t kind = 0; kind < model->kind_count; ++kind) {
         model->first_vertex[kind * info->patch_count + i] = derived->proxies[kind].vertex_count;
         model->first_index[kind * info->patch_count + i] = derived->proxies[kind].index_count;
