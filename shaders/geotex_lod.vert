@@ -25,7 +25,8 @@ layout(location = 0) in uvec2 gtx_block;    /* patch + 2^28 * level; the first n
 #define GTX_VERTEX gl_VertexID
 #endif
 #elif defined(GTX_GRID)
-layout(location = 0) in uvec4 gtx_node;     /* of the patch, and the height's code */
+layout(location = 0) in uvec4 gtx_node;     /* place in the patch, in fourths of a cell; the
+                                               height's code, and sixteenths of one */
 #elif defined(GTX_RHI)
 layout(location = 0) in uvec4 gtx_steps;    /* of the level; the normal */
 #else
@@ -168,7 +169,7 @@ void main()
     int level_of_detail = int(gtx_block.x >> 28);
     vec3 grid = gtx_displaced(index, level_of_detail);
 #else
-    vec3 grid = vec3(gtx_node.xyz);
+    vec3 grid = vec3(0.25 * vec2(gtx_node.xy), float(gtx_node.z) + 0.0625 * float(gtx_node.w));
 #endif
     vec4 object = vec4(gtx_object_point(gtx_frame_of(index), grid), 1.0);
     vec2 at = grid.xy;

@@ -301,10 +301,12 @@ static void measure(const making *m, const gtx_rtin_source *source, gtx_rtin_blo
         blocks[i] = look_at_parts(&b, trim + y * row_texels + x, row_texels);
         if (!blocks[i].some)
             continue;
+        const double unit = flattest(p, step, &source->slabs[i]);
         weigh(&b, blocks[i].whole);
-        measure_block(m, &b, m->error + (size_t)y * m->row + x,
-                      flattest(p, step, &source->slabs[i]));
+        measure_block(m, &b, m->error + (size_t)y * m->row + x, unit);
+        m->rtin->code = greater(m->rtin->code, (float)unit);
     }
+    gtx_rtin_add_twist(source->finest, m->rtin, m->nodes, m->error);
 }
 
 size_t gtx_rtin_nodes(const gtx_patch *patch)

@@ -54,12 +54,16 @@ typedef struct gtx_rtin_block {
 
 /* A patch's network. A triangle's middle is to be halved where its error is more than is allowed:
  * if that is never more at a middle than at those of the halves, as it is where it is a linear
- * function of place less reach, the triangles fit together without a crack. */
+ * function of place less reach, the triangles fit together without a crack. Leaves are halves of
+ * cells; where the surface bends away from them they are divided when they are drawn. */
 typedef struct gtx_rtin {
     uint32_t columns, rows;   /* blocks */
     float unit;               /* of errors, in object units */
     uint16_t rise[GTX_RTIN_LEVELS]; /* codes from a middle of the level to those of the halves, at
-                                       most, where they have an error */
+                                       most, where they have an error; of the last level from the
+                                       middles of cells to their corners */
+    float twist;              /* the most that a cell's surface is off two triangles, in codes */
+    float code;               /* what a code is square to the surface, at most: object units */
     bool glossy;              /* light at corners does not tell of its highlights */
 } gtx_rtin;
 
@@ -86,6 +90,19 @@ typedef struct gtx_rtin_source {
 gtx_result gtx_rtin_build(const gtx_rtin_source *source, const gtx_allocator *allocator,
                           gtx_rtin *out, gtx_rtin_node *nodes, gtx_rtin_block *blocks,
                           gtx_error *error);
+
+/* How far the surface of the cell from a node on is from two triangles, in codes: in its middle,
+ * wherever its diagonal is (`row`: nodes a row). */
+static inline float gtx_rtin_twist(const gtx_rtin_node *node, size_t row)
+{
+    const int32_t twist = node[0].code - node[1].code - node[row].code + node[row + 1].code;
+    return (float)(twist < 0 ? -twist : twist) / 4;
+}
+
+/* twist.c: finds the most of that, and adds it to the `error` of the nodes at which halves of cells
+ * have their right angles, so that both halves of a cell are there where it is divided. */
+void gtx_rtin_add_twist(const gtx_grid *finest, gtx_rtin *rtin, const gtx_rtin_node *nodes,
+                        float *error);
 
 /* marks.c: what nodes tell besides their errors, and whether the patch is glossy. `scratch`
  * has room for a number a node. */

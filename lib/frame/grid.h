@@ -7,11 +7,23 @@
 #include "frame/plan.h"
 #include "frame/scratch.h"
 
-/* A node of a patch's level 0, as geotex_lod.vert reads it. */
+/* A point of a patch's level 0, as geotex_lod.vert reads it: a node, or a place between nodes. */
 typedef struct gtx_grid_vertex {
-    uint16_t x, y, code, unused;
+    uint16_t x, y;            /* in parts of a cell, GTX_GRID_PARTS a side */
+    uint16_t code, rest;      /* rest: the height above the code, GTX_GRID_PARTS^2 to a code */
     uint32_t patch;
 } gtx_grid_vertex;
+
+enum { GTX_GRID_PARTS = 4 };
+
+/* In grid space. */
+static inline void gtx_grid_place(const gtx_grid_vertex *v, double out[3])
+{
+    const double parts = GTX_GRID_PARTS;
+    out[0] = v->x / parts;
+    out[1] = v->y / parts;
+    out[2] = v->code + v->rest / (parts * parts);
+}
 
 /* Drawn alike: first those seen from the front, then those from behind; of either those that show
  * whole, which leave the depth test first, then others; of these first those that may be lit at
@@ -63,6 +75,8 @@ typedef struct gtx_refining {
     double w[4], eye[4];      /* of clip space, over grid space; and there */
     double reach[GTX_RTIN_LEVELS]; /* how much nearer may be what halving a middle changes */
     double scale;             /* w at which an error's unit is what the view allows */
+    double code;              /* the same of a code; 0: no cell is divided */
+    double reach_of_cell;
     double near;              /* w below which all triangles are to be lit at vertices */
 } gtx_refining;
 
@@ -73,6 +87,17 @@ gtx_refining gtx_refine(const gtx_frustum *f, const gtx_model *model, uint32_t p
                         const gtx_allocator *hooks);
 /* Adds the triangles of a block. False without memory. */
 bool gtx_refine_block(const gtx_refining *r, uint32_t column, uint32_t row);
+
+/* divide.c: how a cell is drawn: as two halves, which are as far from its surface as its diagonal;
+ * as four triangles around its middle, which are a fourth as far from it; or its halves in so many
+ * parts a side that they are a fourth as far again. */
+typedef enum gtx_division { GTX_CELL_HALVES, GTX_CELL_QUARTERS, GTX_CELL_PARTS } gtx_division;
+gtx_division gtx_cell_division(const gtx_refining *r, int64_t x, int64_t y);
+/* Cuts half a cell, its corners as those of a triangle, into triangles that meet those over cells
+ * beside it. Returns how many; `out` gets their corners, in parts of a cell. */
+enum { GTX_HALF_TRIANGLES = GTX_GRID_PARTS * GTX_GRID_PARTS };
+uint32_t gtx_divide_half(const gtx_refining *r, uint32_t corner[3][2],
+                         uint32_t out[GTX_HALF_TRIANGLES][3][2]);
 
 /* mix.c: takes those patches out of the planner's plan that are drawn so, and those that they hide,
  * and fills its grids with the blocks of theirs that are in view and may face the eye, in the order

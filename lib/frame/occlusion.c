@@ -245,7 +245,9 @@ static bool place_points(gtx_occlusion *o, const gtx_patch_view *v, const gtx_gr
     point *points = gtx_scratch_reserve(hooks, &o->points, count, sizeof *points);
     for (uint32_t i = 0; points && i < count; ++i) {
         const gtx_grid_vertex *n = &vertices[first + i];
-        const float p[3] = {n->x, n->y, n->code};
+        double of[3];
+        gtx_grid_place(n, of);
+        const float p[3] = {(float)of[0], (float)of[1], (float)of[2]};
         float at[4];
         for (int k = 0; k < 4; ++k) {
             const float *row = k < 3 ? v->row[k] : v->near;

@@ -34,6 +34,7 @@ gtx_refining gtx_refine(const gtx_frustum *f, const gtx_model *model, uint32_t p
 {
     const gtx_rtin *rtin = &model->rtins[patch];
     const bool shaded = model->has_material || model->has_emission;
+    const float *sphere = model->facts[patch].sphere;
     gtx_refining r = {.hooks = hooks, .grids = grids, .rtin = rtin,
                       .nodes = model->nodes + model->first_node[patch],
                       .blocks = model->blocks + model->first_slab[patch],
@@ -52,6 +53,14 @@ gtx_refining gtx_refine(const gtx_frustum *f, const gtx_model *model, uint32_t p
     /* A middle's triangles reach as far as its halves' middles; those of the finest level a
      * cell. */
     double reach = fmax(fabs(w[0]), fabs(w[1]));
+    r.reach_of_cell = (fabs(w[0]) + fabs(w[1])) / 2;
+    if (rtin->twist > 0)
+        reach = fmax(reach, 2 * (r.reach_of_cell + fabs(w[2]) * rtin->rise[GTX_RTIN_LEVELS - 1]));
+    /* Where a patch is so far away that no cell is to be divided, none is looked at. */
+    const double code = f->scale * (double)rtin->code;
+    const double least = gtx_plane_at(&f->w, sphere) - f->w.slope * (double)sphere[3];
+    if (r.by_error && code * (double)rtin->twist > least - reach)
+        r.code = code;
     for (uint32_t level = GTX_RTIN_LEVELS; level-- > 0;) {
         const double away = GTX_RTIN_CELLS >> (level / 2 + 1);
         const double x = fabs(w[0]) * away, y = fabs(w[1]) * away;
@@ -87,23 +96,41 @@ static uint32_t vertex_of(const gtx_refining *r, uint32_t x, uint32_t y)
     if (*slot != UINT32_MAX)
         return *slot;
     *slot = g->vertex_count++;
-    vertices[*slot] = (gtx_grid_vertex){.x = (uint16_t)x, .y = (uint16_t)y,
+    vertices[*slot] = (gtx_grid_vertex){.x = (uint16_t)(GTX_GRID_PARTS * x),
+                                        .y = (uint16_t)(GTX_GRID_PARTS * y),
                                         .code = r->nodes[node].code, .patch = r->patch};
     return *slot;
+}
+
+/* The same of a place in parts of a cell; between nodes each triangle has its own. */
+static uint32_t vertex_between(const gtx_refining *r, const uint32_t at[2])
+{
+    enum { PARTS = GTX_GRID_PARTS };
+    const uint32_t x = at[0] / PARTS, y = at[1] / PARTS, i = at[0] % PARTS, j = at[1] % PARTS;
+    if (!i && !j)
+        return vertex_of(r, x, y);
+    const gtx_rtin_node *n = &r->nodes[y * r->row + x];
+    const uint32_t across = i ? 1 : 0, down = j ? r->row : 0; /* on a side there may be no other */
+    const uint32_t height = (PARTS - j) * ((PARTS - i) * n[0].code + i * n[across].code) +
+                            j * ((PARTS - i) * n[down].code + i * n[down + across].code);
+    gtx_grid_vertex *vertices = r->grids->vertices.data;
+    vertices[r->grids->vertex_count] = (gtx_grid_vertex){
+        .x = (uint16_t)at[0], .y = (uint16_t)at[1], .code = (uint16_t)(height / (PARTS * PARTS)),
+        .rest = (uint16_t)(height % (PARTS * PARTS)), .patch = r->patch};
+    return r->grids->vertex_count++;
 }
 
 /* Whether the eye is above the plane through corners, counterclockwise seen from above. */
 static bool is_front(const gtx_refining *r, const gtx_grid_vertex *const corner[3])
 {
-    const gtx_grid_vertex *p = corner[0];
-    double side[2][3];
-    for (int k = 0; k < 2; ++k) {
-        const gtx_grid_vertex *q = corner[k + 1];
-        side[k][0] = q->x - p->x;
-        side[k][1] = q->y - p->y;
-        side[k][2] = q->code - p->code;
+    double at[3], side[2][3];
+    gtx_grid_place(corner[0], at);
+    for (int i = 0; i < 2; ++i) {
+        gtx_grid_place(corner[i + 1], side[i]);
+        for (int k = 0; k < 3; ++k)
+            side[i][k] -= at[k];
     }
-    const double at[3] = {p->x, p->y, p->code}, *a = side[0], *b = side[1], *e = r->eye;
+    const double *a = side[0], *b = side[1], *e = r->eye;
     double above = 0;
     for (int k = 0; k < 3; ++k) {
         const int i = (k + 1) % 3, j = (k + 2) % 3;
@@ -174,6 +201,43 @@ static uint32_t looks_of(const gtx_refining *r, const place *at, const gtx_rtin_
     return r->mapped || r->nodes[y * r->row + x].bits & GTX_RTIN_ROUGH ? GTX_GRID_MAPPED : 0;
 }
 
+static void add_drawn(const gtx_refining *r, const place *at, const uint32_t index[3],
+                      uint32_t from_front)
+{
+    const gtx_grid_vertex *vertices = r->grids->vertices.data;
+    const gtx_grid_vertex *const corner[3] = {&vertices[index[0]], &vertices[index[1]],
+                                              &vertices[index[2]]};
+    const bool front = at->front || is_front(r, corner);
+    const uint32_t looks = from_front + (front ? 0 : GTX_GRID_BEHIND);
+    if (!front && !r->two_sided)
+        return;
+    uint32_t *to = (uint32_t *)r->grids->indices[looks].data + r->grids->index_count[looks];
+    for (int c = 0; c < 3; ++c)
+        to[(c + r->turn) % 3] = index[c];
+    r->grids->index_count[looks] += 3;
+}
+
+/* Half a cell, divided as its surface and those beside it ask for. What is not whole is cut by
+ * maps. */
+static void add_half(const gtx_refining *r, const place *at, const gtx_rtin_triangle *t,
+                     uint32_t from_front)
+{
+    uint32_t corner[3][2], divided[GTX_HALF_TRIANGLES][3][2];
+    for (int c = 0; c < 3; ++c) {
+        corner[c][0] = GTX_GRID_PARTS * (at->x + t->corner[c][0]);
+        corner[c][1] = GTX_GRID_PARTS * (at->y + t->corner[c][1]);
+    }
+    const uint32_t count = gtx_divide_half(r, corner, divided);
+    if (count > 1 && from_front & GTX_GRID_TRIMMED)
+        from_front |= GTX_GRID_MAPPED;
+    for (uint32_t i = 0; i < count; ++i) {
+        uint32_t index[3];
+        for (int c = 0; c < 3; ++c)
+            index[c] = vertex_between(r, divided[i][c]);
+        add_drawn(r, at, index, from_front);
+    }
+}
+
 /* Adds what shows of a triangle, as a whole or its halves. */
 static void add(const gtx_refining *r, const place *at, uint32_t triangle, uint32_t level)
 {
@@ -188,32 +252,28 @@ static void add(const gtx_refining *r, const place *at, uint32_t triangle, uint3
     const uint32_t from_front = looks_of(r, at, t, level);
     if (from_front == GTX_GRID_LOOKS)
         return;
-    const gtx_grid_vertex *vertices = r->grids->vertices.data, *corner[3];
-    uint32_t index[3];
-    for (int c = 0; c < 3; ++c) {
-        index[c] = vertex_of(r, at->x + t->corner[c][0], at->y + t->corner[c][1]);
-        corner[c] = &vertices[index[c]];
-    }
-    const bool front = at->front || is_front(r, corner);
-    const uint32_t looks = from_front + (front ? 0 : GTX_GRID_BEHIND);
-    uint32_t *to = (uint32_t *)r->grids->indices[looks].data + r->grids->index_count[looks];
-    if (!front && !r->two_sided)
+    if (level == GTX_RTIN_LEVELS && r->code > 0) {
+        add_half(r, at, t, from_front);
         return;
+    }
+    uint32_t index[3];
     for (int c = 0; c < 3; ++c)
-        to[(c + r->turn) % 3] = index[c];
-    r->grids->index_count[looks] += 3;
+        index[c] = vertex_of(r, at->x + t->corner[c][0], at->y + t->corner[c][1]);
+    add_drawn(r, at, index, from_front);
 }
 
 /* Room for all that a block may add. */
 static bool reserve(const gtx_refining *r)
 {
     gtx_grids *g = r->grids;
-    const uint32_t nodes = (GTX_RTIN_CELLS + 1) * (GTX_RTIN_CELLS + 1);
+    const uint32_t triangles = GTX_RTIN_LEAF * (r->code > 0 ? GTX_HALF_TRIANGLES : 1);
+    const uint32_t nodes = (GTX_RTIN_CELLS + 1) * (GTX_RTIN_CELLS + 1) +
+                           (r->code > 0 ? 3 * triangles : 0);
     bool all = gtx_scratch_grow(r->hooks, &g->vertices, g->vertex_count + nodes,
                                 sizeof(gtx_grid_vertex));
     for (uint32_t k = 0; k < (r->two_sided ? GTX_GRID_LOOKS : GTX_GRID_BEHIND); ++k)
         all = all && gtx_scratch_grow(r->hooks, &g->indices[k],
-                                      g->index_count[k] + 3 * GTX_RTIN_LEAF, sizeof(uint32_t));
+                                      g->index_count[k] + 3 * triangles, sizeof(uint32_t));
     return all;
 }
 
