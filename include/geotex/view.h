@@ -92,7 +92,7 @@ typedef struct gtx_eye {
  * down to two per cell of level 0: halved until their error is within max_error, and at outlines,
  * where patches meet, within 1/16 of it; `level` n means two per 2^(n - 1) x 2^(n - 1) cells. A
  * cell, whose surface is bilinear, gets four triangles where two are off by more than max_error,
- * and 32, which are off by a sixteenth of that, where four are, too. The triangles are built in
+ * and 16, which are off by a sixteenth of that, where four are, too. The triangles are built in
  * each draw, in a few tens of nanoseconds each. Blocks of 8 x 8 cells that are out of view, and
  * triangles that face away, are not drawn. Fragments do not write depth. On a GPU the vertex shader
  * displaces whole blocks instead, at the coarsest level within max_error, with two triangles per

@@ -5,7 +5,8 @@
 #include <math.h>
 #include <string.h>
 
-enum { PARTS = GTX_GRID_PARTS };
+/* Of a cell; and those that a side is cut into. */
+enum { PARTS = GTX_GRID_PARTS, SIDE_PARTS = 2 };
 
 gtx_division gtx_cell_division(const gtx_refining *r, int64_t x, int64_t y)
 {
@@ -39,11 +40,11 @@ static void add(cut *c, const uint32_t p[2], const uint32_t q[2], const uint32_t
     memcpy(to[2], o, sizeof to[2]);
 }
 
-/* The point of a side that is k parts away from its first corner. */
+/* The point of a line that is k parts away from its first end. */
 static void point_of(const uint32_t p[2], const uint32_t q[2], uint32_t k, uint32_t out[2])
 {
     for (int a = 0; a < 2; ++a)
-        out[a] = ((PARTS - k) * p[a] + k * q[a]) / PARTS;
+        out[a] = ((SIDE_PARTS - k) * p[a] + k * q[a]) / SIDE_PARTS;
 }
 
 /* Triangles from the first `count` parts of a side to a point beyond. */
@@ -58,21 +59,25 @@ static void add_fan(cut *c, const uint32_t p[2], const uint32_t q[2], uint32_t c
     }
 }
 
-/* All in rows from the right angle on. */
+/* A fourth of the cell, and half of two: around the middle of each. */
 static void add_parts(cut *c, uint32_t corner[3][2])
 {
     const uint32_t *a = corner[0], *b = corner[1], *o = corner[2];
-    for (uint32_t j = 0; j < PARTS; ++j)
-        for (uint32_t i = 0; i + j < PARTS; ++i) {
-            uint32_t p[4][2];
-            for (uint32_t n = 0; n < 4; ++n)
-                for (int k = 0; k < 2; ++k)
-                    p[n][k] = ((PARTS - i - n % 2 - j - n / 2) * o[k] + (i + n % 2) * a[k] +
-                               (j + n / 2) * b[k]) / PARTS;
-            add(c, p[0], p[1], p[2]);
-            if (i + j + 1 < PARTS)
-                add(c, p[1], p[3], p[2]);
-        }
+    uint32_t beside_a[2], beside_b[2], middle[2], inner[2], toward_a[2], toward_b[2];
+    point_of(o, a, 1, beside_a);
+    point_of(o, b, 1, beside_b);
+    point_of(a, b, 1, middle);
+    point_of(o, middle, 1, inner);
+    point_of(a, middle, 1, toward_a);
+    point_of(b, middle, 1, toward_b);
+    add(c, o, beside_a, inner);
+    add(c, beside_a, middle, inner);
+    add(c, middle, beside_b, inner);
+    add(c, beside_b, o, inner);
+    add(c, beside_a, a, toward_a);
+    add(c, middle, beside_a, toward_a);
+    add(c, beside_b, middle, toward_b);
+    add(c, b, beside_b, toward_b);
 }
 
 /* Whether the cell beyond the side from p to q of the cell at `cell` has points on it. */
@@ -104,22 +109,22 @@ uint32_t gtx_divide_half(const gtx_refining *r, uint32_t corner[3][2],
     const bool cut_a = is_cut(r, cell, o, a), cut_b = is_cut(r, cell, b, o);
     if (division == GTX_CELL_QUARTERS) {
         if (cut_a)
-            add_fan(&c, o, a, PARTS, middle);
+            add_fan(&c, o, a, SIDE_PARTS, middle);
         else
             add(&c, o, a, middle);
         if (cut_b)
-            add_fan(&c, b, o, PARTS, middle);
+            add_fan(&c, b, o, SIDE_PARTS, middle);
         else
             add(&c, b, o, middle);
     } else if (cut_a && cut_b) {
         uint32_t last[2];
-        point_of(b, o, PARTS - 1, last);
-        add_fan(&c, b, o, PARTS - 1, a);
-        add_fan(&c, o, a, PARTS, last);
+        point_of(b, o, SIDE_PARTS - 1, last);
+        add_fan(&c, b, o, SIDE_PARTS - 1, a);
+        add_fan(&c, o, a, SIDE_PARTS, last);
     } else if (cut_a) {
-        add_fan(&c, o, a, PARTS, b);
+        add_fan(&c, o, a, SIDE_PARTS, b);
     } else if (cut_b) {
-        add_fan(&c, b, o, PARTS, a);
+        add_fan(&c, b, o, SIDE_PARTS, a);
     } else {
         add(&c, a, b, o);
     }

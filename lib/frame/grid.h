@@ -89,13 +89,13 @@ gtx_refining gtx_refine(const gtx_frustum *f, const gtx_model *model, uint32_t p
 bool gtx_refine_block(const gtx_refining *r, uint32_t column, uint32_t row);
 
 /* divide.c: how a cell is drawn: as two halves, which are as far from its surface as its diagonal;
- * as four triangles around its middle, which are a fourth as far from it; or its halves in so many
- * parts a side that they are a fourth as far again. */
+ * as four triangles around its middle, which are a fourth as far from it; or so its four parts, a
+ * fourth as far again. */
 typedef enum gtx_division { GTX_CELL_HALVES, GTX_CELL_QUARTERS, GTX_CELL_PARTS } gtx_division;
 gtx_division gtx_cell_division(const gtx_refining *r, int64_t x, int64_t y);
 /* Cuts half a cell, its corners as those of a triangle, into triangles that meet those over cells
  * beside it. Returns how many; `out` gets their corners, in parts of a cell. */
-enum { GTX_HALF_TRIANGLES = GTX_GRID_PARTS * GTX_GRID_PARTS };
+enum { GTX_HALF_TRIANGLES = 8 };
 uint32_t gtx_divide_half(const gtx_refining *r, uint32_t corner[3][2],
                          uint32_t out[GTX_HALF_TRIANGLES][3][2]);
 

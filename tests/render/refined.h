@@ -143,7 +143,7 @@ static inline bool place_of(const subject *s, uint32_t triangle, uint32_t low[2]
             high[k] = at[k] > high[k] ? at[k] : high[k];
         }
     }
-    return high[0] - low[0] <= 1 && high[1] - low[1] <= 1;
+    return high[0] - low[0] <= PARTS / 2 && high[1] - low[1] <= PARTS / 2;
 }
 
 #endif
