@@ -291,7 +291,7 @@ check: ## every test under the sanitizers, threads under theirs, every file of t
 	@GTX_CORPUS=all $(MAKE) --no-print-directory config=sanitize run-tests
 	$(again) -j$$(nproc) config=thread werror=1 test-threads
 
-check-platforms: ## core and cooker by other compilers, for Windows, i386 and arm64
+check-platforms: ## core and cooker by other compilers, for Windows, i386, arm64; core for s390x
 	@tests/platforms/check.sh $(build)/platforms
 
 # ---- the demo ------------------------------------------------------------------------------------

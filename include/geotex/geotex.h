@@ -152,8 +152,8 @@ enum { /* gtx_patch.flags */
 };
 
 /* A patch: a parallelepiped (its frame), and a rectangle of the asset's pages that holds its maps.
- * 128 bytes, laid out as in the file (little-endian). Lengths and positions are in object units,
- * positions relative to the asset's anchor.
+ * 128 bytes, laid out as in the file, in the processor's byte order. Lengths and positions are in
+ * object units, positions relative to the asset's anchor.
  *
  * The texel (i, j) of a w x h rectangle with height code c lies at
  *   origin + (i + 0.5) / w * extent_x * axis_x

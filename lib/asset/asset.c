@@ -4,13 +4,10 @@
 #include "asset/section.h"
 #include "base/alloc.h"
 
-/* Records and 16-bit codes are used in memory as they lie in the file. */
+/* Records are used in memory as they lie in the file, but for the order of bytes. */
 _Static_assert(sizeof(gtx_patch) == 128 && offsetof(gtx_patch, page) == 64 &&
                    offsetof(gtx_patch, sphere) == 80 && offsetof(gtx_patch, reserved) == 100,
                "gtx_patch has the layout of the file record");
-#if defined(__BYTE_ORDER__) && __BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__
-#error "geotex needs a little-endian processor"
-#endif
 
 static uint64_t map_size(const gtx_info *info, gtx_section_kind kind, uint32_t level)
 {

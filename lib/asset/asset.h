@@ -3,6 +3,7 @@
 #define GTX_ASSET_ASSET_H
 
 #include "asset/patch.h"
+#include "base/bytes.h"
 
 #include <stdbool.h>
 
@@ -49,6 +50,8 @@ static inline uint32_t gtx_height_code(const gtx_asset *asset, const gtx_patch *
     size_t texel = row * asset->info.page_width + patch->rect[0] + x;
     if (asset->info.height_bits == 8)
         return asset->height[texel];
+    if (GTX_BIG_ENDIAN)
+        return (uint32_t)asset->height[2 * texel] << 8 | asset->height[2 * texel + 1];
     return asset->height[2 * texel] | (uint32_t)asset->height[2 * texel + 1] << 8;
 }
 

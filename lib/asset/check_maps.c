@@ -122,7 +122,9 @@ static inline bool is_clear(const limits *limit, const uint8_t *row, uint32_t by
         from[i] = (float)(first[i] - p->sphere[i]);
     int beyond = 0;
     for (int32_t x = 0; x < p->rect[2]; ++x) {
-        const int32_t code = bytes == 1 ? row[x] : row[2 * x] | row[2 * x + 1] << 8;
+        const int32_t code = bytes == 1       ? row[x]
+                             : GTX_BIG_ENDIAN ? row[2 * x] << 8 | row[2 * x + 1]
+                                              : row[2 * x] | row[2 * x + 1] << 8;
         const float u = (float)x, h = (float)code;
         const float a = from[0] + u * in.along_x[0] + h * in.along_z[0];
         const float b = from[1] + u * in.along_x[1] + h * in.along_z[1];

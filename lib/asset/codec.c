@@ -2,6 +2,7 @@
 #include "asset/codec.h"
 
 #include "asset/lod.h"
+#include "asset/order.h"
 #include "base/alloc.h"
 
 #ifdef GTX_ZSTD
@@ -69,6 +70,7 @@ size_t gtx_encode_section(const gtx_encoder *encoder, const gtx_section *section
                           const gtx_asset *asset, const uint8_t *data, uint8_t *out)
 {
     size_t size = (size_t)section->size;
+    data = gtx_bytes_in_file(asset, section, data, section->filter ? out : encoder->filtered);
     if (section->filter) {
         apply(section, asset, data, encoder->filtered);
         data = encoder->filtered;

@@ -82,8 +82,8 @@ typedef struct gtx_encoder {
     uint8_t *filtered;
 } gtx_encoder;
 
-/* Encodes a section of the asset, whose bytes are `data`, into `out`, which has as many. Returns
- * the bytes written, 0 when they are not fewer. */
+/* Encodes a section of the asset, whose bytes in memory are `data`, into `out`, which has as many.
+ * Returns the bytes written, 0 when they are not fewer. */
 size_t gtx_encode_section(const gtx_encoder *encoder, const gtx_section *section,
                           const gtx_asset *asset, const uint8_t *data, uint8_t *out);
 

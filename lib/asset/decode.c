@@ -3,8 +3,8 @@
 #include "asset/decode.h"
 
 #include "asset/check.h"
+#include "asset/order.h"
 #include "base/alloc.h"
-#include "base/hash.h"
 #include "base/jobs.h"
 
 #include <string.h>
@@ -135,6 +135,7 @@ static void decode_alone(const gtx_decoding *d, gtx_part *part)
     if (part->wrong)
         memset(part->out, 0, size);
     hash_part(d, part);
+    gtx_turn_section(d->asset, section, part->out);
     if (section->kind == GTX_SECTION_HEIGHT && d->marks)
         mark_levels(d);
 }

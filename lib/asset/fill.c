@@ -100,14 +100,17 @@ static void fill_together(const gtx_fill *area, const uint8_t *p, uint8_t mark, 
         const uint8_t *from = p - 1 + y * (ptrdiff_t)area->stride;
         memcpy(ring, from, sizeof ring);
         memcpy(code, area->codes + 2 * (from - area->ring), sizeof code);
+        gtx_lanes_order(code);
         gtx_lanes_add(&column, code, ring, mark - 1);
     }
     gtx_lanes_spread(&column, &sums);
     uint8_t *out = area->codes + 2 * (p - 1 - area->ring);
     memcpy(ring, p - 1, sizeof ring);
     memcpy(code, out, sizeof code);
+    gtx_lanes_order(code);
     ring[0] = ring[GTX_LANES - 1] = 0;
     gtx_lanes_mean(&sums, ring, mark, code);
+    gtx_lanes_order(code);
     memcpy(out, code, sizeof code);
 }
 

@@ -2,6 +2,8 @@
  * specification, 9.4). */
 #include "asset/codec.h"
 
+#include "base/bytes.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -25,7 +27,7 @@ uint64_t gtx_coded_size(const gtx_section *section)
 uint64_t gtx_apply_size(const gtx_section *section, gtx_map_shape image)
 {
     if (section->filter != GTX_FILTER_SURFACE)
-        return section->filter ? section->size : 0;
+        return section->filter || GTX_BIG_ENDIAN ? section->size : 0; /* gtx_bytes_in_file */
     /* The image with empty texels as the rules have them, marks of the level and of level 0. */
     const uint64_t texels = section->size / image.texel;
     return 2 * section->size + texels + (section->level ? texels << 2 * section->level : 0);

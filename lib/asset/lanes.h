@@ -2,7 +2,7 @@
 #ifndef GTX_ASSET_LANES_H
 #define GTX_ASSET_LANES_H
 
-#include <stdint.h>
+#include "base/bytes.h"
 
 enum { GTX_LANES = 16 };
 
@@ -11,6 +11,13 @@ enum { GTX_LANES = 16 };
 typedef struct gtx_lane_sums {
     int16_t a[GTX_LANES + 2], b[GTX_LANES + 2], z[GTX_LANES + 2];
 } gtx_lane_sums;
+
+/* Normals copied from bytes, or to be copied there: the first byte is the low one. */
+static inline void gtx_lanes_order(uint16_t *code)
+{
+    for (int l = 0; GTX_BIG_ENDIAN && l < GTX_LANES; ++l)
+        code[l] = gtx_first_low_u16(code[l]);
+}
 
 /* Adds normals, the first byte the low one, where `ring` has 1 to `most`. */
 static inline void gtx_lanes_add(gtx_lane_sums *restrict sums, const uint16_t *restrict code,

@@ -1,6 +1,8 @@
 /* The frame of a patch, and the fields of its record that follow from its height codes. */
 #include "asset/patch.h"
 
+#include "base/bytes.h"
+
 void gtx_invert_affine(double (*map)[4], double (*out)[4])
 {
     double cofactor[3][3], det = 0;
@@ -41,7 +43,7 @@ gtx_patch_frame gtx_patch_frame_of(const gtx_patch *patch, uint32_t height_bits)
 static uint32_t code_at(const gtx_code_map *codes, uint32_t x, uint32_t y)
 {
     const uint8_t *at = (const uint8_t *)codes->first + (y * codes->width + x) * codes->bytes;
-    return codes->bytes == 1 ? at[0] : at[0] | (uint32_t)at[1] << 8;
+    return codes->bytes == 1 ? at[0] : gtx_load_own_u16(at);
 }
 
 static void include_point(gtx_patch_span *span, const double point[3])

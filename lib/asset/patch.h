@@ -107,7 +107,7 @@ void gtx_invert_affine(double (*map)[4], double (*out)[4]);
 typedef struct gtx_code_map {
     const void *first;            /* of texel (0, 0) */
     size_t width;                 /* texels from one row to the next */
-    uint32_t bytes;               /* per code: 1, or 2 little-endian */
+    uint32_t bytes;               /* per code: 1, or 2 */
     uint32_t height_bits;
 } gtx_code_map;
 

@@ -1,8 +1,5 @@
 /* What the sections of an asset are: types, formats, sizes, order and hashes. */
-#include "asset/section.h"
-
-#include "base/bytes.h"
-#include "base/hash.h"
+#include "asset/order.h"
 
 typedef struct kind_row {
     char type[5];
@@ -97,7 +94,7 @@ uint32_t gtx_asset_sections(const gtx_asset *asset, gtx_section out[GTX_MAX_KNOW
                 section->size = asset->blocks_size;
             if (kind == GTX_SECTION_LOD)
                 section->size = asset->lod_size[level];
-            section->hash = gtx_hash_bytes(data, (size_t)section->size);
+            section->hash = gtx_hash_section(asset, section, data);
         }
     }
     return count;

@@ -148,8 +148,9 @@ static void expected_means(const gtx_layer *s, size_t row, size_t x, size_t coun
         uint32_t pair[GTX_LANES];
         memcpy(pair, codes + 2 * first, sizeof pair);
         for (size_t l = 0; l < GTX_LANES; ++l) {
-            code[0][l] = (uint16_t)pair[l];
-            code[1][l] = (uint16_t)(pair[l] >> 16);
+            const uint32_t both = gtx_first_low_u32(pair[l]);
+            code[0][l] = (uint16_t)both;
+            code[1][l] = (uint16_t)(both >> 16);
             mark[0][l] = s->finer[first + 2 * l];
             mark[1][l] = s->finer[first + 2 * l + 1];
         }
@@ -157,6 +158,7 @@ static void expected_means(const gtx_layer *s, size_t row, size_t x, size_t coun
         gtx_lanes_add(&sums, code[1], mark[1], 1);
     }
     gtx_lanes_mean(&sums, s->ring + row * s->shape.width + x, 1, code[0]);
+    gtx_lanes_order(code[0]);
     memcpy(out, code[0], sizeof code[0]);
 }
 

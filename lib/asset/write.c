@@ -2,6 +2,7 @@
 #include "asset/codec.h"
 
 #include "asset/header.h"
+#include "asset/order.h"
 #include "base/alloc.h"
 #include "base/error.h"
 #include "base/jobs.h"
@@ -150,6 +151,8 @@ static void emit(const writer *w, uint8_t *bytes, uint64_t size)
                                ? w->coded[i]
                                : gtx_asset_data(w->asset, section->kind, section->level);
         memcpy(bytes + section->offset, data, (size_t)section->stored_size);
+        if (section->scheme == GTX_SCHEME_STORED)
+            gtx_turn_section(w->asset, section, bytes + section->offset);
     }
 }
 

@@ -1,5 +1,6 @@
 /* All charts baked, and their maps put on the pages of one asset. */
 #include "bake/pages.hpp"
+#include "base/bytes.h"
 #include "base/exact.h"
 #include "bake/seam/seam.hpp"
 
@@ -53,12 +54,10 @@ static Vector<uint8_t> height_bytes(const PatchMaps &patch, unsigned bits)
 {
     Vector<uint8_t> bytes(patch.height.size() * bits / 8);
     for (size_t i = 0; i < patch.height.size(); ++i) {
-        if (bits == 8) {
+        if (bits == 8)
             bytes[i] = uint8_t(patch.height[i]);
-        } else {
-            bytes[2 * i] = uint8_t(patch.height[i]);
-            bytes[2 * i + 1] = uint8_t(patch.height[i] >> 8);
-        }
+        else
+            gtx_store_own_u16(&bytes[2 * i], patch.height[i]);
     }
     return bytes;
 }

@@ -26,7 +26,7 @@ struct Maps {
     Vector<gtx_patch> patches;
     Vector<uint32_t> charts;                  /* of each patch */
     uint32_t page_count = 0, page_width = 0, page_height = 0, mip_count = 0, height_bits = 8;
-    Vector<uint8_t> height;                   /* 1 or 2 bytes a texel, little-endian */
+    Vector<uint8_t> height;                   /* 1 or 2 bytes a texel */
     Vector<uint8_t> trim;
     Vector<Vector<uint8_t>> normal;           /* a level each */
     Vector<Vector<uint8_t>> color;            /* a level each, or empty; likewise the next two */

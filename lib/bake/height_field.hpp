@@ -3,6 +3,7 @@
 
 #include "asset/patch.h"
 #include "bake/field/patch.hpp"
+#include "base/bytes.h"
 
 #include <algorithm>
 
@@ -58,7 +59,7 @@ public:
     uint32_t code(size_t texel) const
     {
         const uint8_t *at = codes_ + texel * code_bytes_;
-        return code_bytes_ == 1 ? *at : *at | uint32_t(at[1]) << 8;
+        return code_bytes_ == 1 ? *at : gtx_load_own_u16(at);
     }
     uint8_t trim(size_t texel) const { return trim_[texel]; }
     /* Whether the outline nearest to a texel is the model's own border; pages do not tell. */

@@ -3,6 +3,7 @@
 
 #include "asset/lod.h"
 #include "asset/patch.h"
+#include "base/bytes.h"
 #include "mesh/vec.hpp"
 
 #include <algorithm>
@@ -195,9 +196,12 @@ struct Fit {
     {
         const size_t count = level.vertex_count;
         Vector<uint8_t> sums(12 * count), expected(2 * count), out(2 * count);
-        gtx_lod_expect_normals(reinterpret_cast<const uint8_t *>(level.indices),
-                               level.triangle_count,
-                               reinterpret_cast<const uint8_t *>(level.positions), count,
+        Vector<uint8_t> indices(12 * size_t(level.triangle_count)), positions(6 * count);
+        for (size_t i = 0; i < indices.size() / 4; ++i)
+            gtx_store_u32(&indices[4 * i], level.indices[i]);
+        for (size_t i = 0; i < positions.size() / 2; ++i)
+            gtx_store_u16(&positions[2 * i], level.positions[i]);
+        gtx_lod_expect_normals(indices.data(), level.triangle_count, positions.data(), count,
                                sums.data(), expected.data());
         for (size_t v = 0; v < count; ++v) {
             const Vec3f n(normals[v]);

@@ -48,7 +48,7 @@ public:
     uint32_t code(uint32_t x, uint32_t y) const
     {
         const uint8_t *p = at(GTX_MAP_HEIGHT, x, y);
-        return maps_.bits == 16 ? p[0] | uint32_t(p[1]) << 8 : p[0];
+        return maps_.bits == 16 ? gtx_load_own_u16(p) : p[0];
     }
     Vector<uint8_t> occupied() const;
 

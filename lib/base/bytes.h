@@ -1,10 +1,17 @@
-/* Little-endian loads and stores, and arithmetic that reports overflow. */
+/* Little-endian loads and stores, the processor's own, and arithmetic that reports overflow. */
 #ifndef GTX_BASE_BYTES_H
 #define GTX_BASE_BYTES_H
 
 #include <stdbool.h>
 #include <stdint.h>
 #include <string.h>
+
+/* Numbers in memory have their high byte first. */
+#if defined(__BYTE_ORDER__) && __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
+#define GTX_BIG_ENDIAN 1
+#else
+#define GTX_BIG_ENDIAN 0
+#endif
 
 static inline uint16_t gtx_load_u16(const uint8_t *p)
 {
@@ -67,6 +74,32 @@ static inline void gtx_store_f64(uint8_t *p, double v)
     uint64_t bits;
     memcpy(&bits, &v, 8);
     gtx_store_u64(p, bits);
+}
+
+/* Numbers of two bytes in the processor's order, of any alignment. */
+static inline uint32_t gtx_load_own_u16(const uint8_t *p)
+{
+    return p[GTX_BIG_ENDIAN] | (uint32_t)p[!GTX_BIG_ENDIAN] << 8;
+}
+
+static inline void gtx_store_own_u16(uint8_t *p, uint32_t v)
+{
+    p[GTX_BIG_ENDIAN] = (uint8_t)v;
+    p[!GTX_BIG_ENDIAN] = (uint8_t)(v >> 8);
+}
+
+/* Two or four bytes that were copied into a number, as the number that has the first of them low;
+ * and back. */
+static inline uint16_t gtx_first_low_u16(uint16_t v)
+{
+    return GTX_BIG_ENDIAN ? (uint16_t)(v << 8 | v >> 8) : v;
+}
+
+static inline uint32_t gtx_first_low_u32(uint32_t v)
+{
+    if (!GTX_BIG_ENDIAN)
+        return v;
+    return v << 24 | (v & 0xFF00) << 8 | (v >> 8 & 0xFF00) | v >> 24;
 }
 
 /* *out = a * b; false on overflow. */

@@ -2,6 +2,8 @@
  * a level's distance from the finest one. */
 #include "derive/codes.h"
 
+#include "base/bytes.h"
+
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
@@ -13,7 +15,7 @@ static void pack_8(const uint16_t *row, const uint16_t *next, const uint8_t *sol
     for (size_t i = 0; i < cells; ++i) {
         const uint32_t corners = row[i] | (uint32_t)row[i + 1] << 8 | (uint32_t)next[i] << 16 |
                                  (uint32_t)next[i + 1] << 24;
-        const uint32_t texel = solid[i] ? corners : 0;
+        const uint32_t texel = solid[i] ? gtx_first_low_u32(corners) : 0;
         memcpy(out + 4 * i, &texel, 4);
     }
 }

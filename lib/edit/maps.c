@@ -90,9 +90,9 @@ static void write_heights(writer *w)
         const uint32_t code = w->texels[t].coded ? gtx_nearest_code(steps, bits) : 0;
         uint8_t *to =
             gtx_edit_texel(w->out, w->to, GTX_SECTION_HEIGHT, 0, t % w->width, t / w->width);
-        to[0] = (uint8_t)code;
+        to[GTX_BIG_ENDIAN && bits == 16] = (uint8_t)code;
         if (bits == 16)
-            to[1] = (uint8_t)(code >> 8);
+            to[!GTX_BIG_ENDIAN] = (uint8_t)(code >> 8);
     }
     const gtx_code_map codes = gtx_codes_of(w->out, w->to);
     gtx_measure_patch(w->to, &codes);

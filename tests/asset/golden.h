@@ -124,7 +124,7 @@ static inline void golden_fill(const golden *g, gtx_patch *patch, uint8_t *heigh
             if (g->bits == 8)
                 height[at] = (uint8_t)code;
             else
-                gtx_store_u16(height + 2 * at, (uint16_t)code);
+                gtx_store_own_u16(height + 2 * at, code);
             trim[at] = (uint8_t)(100 + (x + 2 * y) % 40);
         }
     }

@@ -204,8 +204,9 @@ static void test_filters(void **state)
             const size_t memory = gtx_encoder_size(19, section.size);
             const gtx_encoder encoder = {19, need(malloc(memory)), memory,
                                          need(malloc(1 + gtx_apply_size(&section, shape)))};
-            size_t size = gtx_encode_section(&encoder, &section, asset,
-                                             file.data + section.offset, coded);
+            size_t size = gtx_encode_section(
+                &encoder, &section, asset, gtx_asset_data(asset, section.kind, section.level),
+                coded);
             free(encoder.memory);
             free(encoder.filtered);
             assert_int_not_equal(size, 0);

@@ -9,6 +9,7 @@ extern "C" {
 }
 
 #include "asset/patch.h"
+#include "base/bytes.h"
 #include "bake/lods.hpp"
 #include "bake/tiles.hpp"
 
@@ -60,7 +61,7 @@ template <class Body> static void for_texels(const HeightGrid &grid, const Maps 
                 const size_t at = row * maps.page_width + p.rect[0] + x;
                 const unsigned code = maps.height_bits == 8
                                           ? maps.height[at]
-                                          : maps.height[2 * at] | maps.height[2 * at + 1] << 8;
+                                          : gtx_load_own_u16(&maps.height[2 * at]);
                 if (!code)
                     continue;
                 const double a = (x + 0.5) / p.rect[2] * p.extent_x;

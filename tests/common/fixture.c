@@ -56,12 +56,10 @@ static void sample_level(maps *m, const fixture_patch *from, const gtx_patch *pa
             m->trim[at] = gtx_nearest_trim((float)texel.trim);
             double steps = texel.height * gtx_height_steps(m->desc.height_bits);
             uint32_t code = texel.height < 0 ? 0 : gtx_nearest_code(steps, m->desc.height_bits);
-            if (m->desc.height_bits == 8) {
+            if (m->desc.height_bits == 8)
                 m->height[at] = (uint8_t)code;
-            } else {
-                m->height[2 * at] = (uint8_t)code;
-                m->height[2 * at + 1] = (uint8_t)(code >> 8);
-            }
+            else
+                gtx_store_own_u16(m->height + 2 * at, code);
         }
 }
 

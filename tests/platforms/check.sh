@@ -1,7 +1,8 @@
 #!/bin/sh
 # Other compilers and processors: the core's tests, and where the packages of that processor are
-# there the cooker's, whose bytes must be those of tests/cook/test_content. A row each.
-#   check.sh FOLDER [gcc-11|clang-14|mingw|i386|arm64]...
+# there the cooker's, whose bytes must be those of tests/cook/test_content; of the big-endian s390x
+# the core's alone. A row each.
+#   check.sh FOLDER [gcc-11|clang-14|mingw|i386|arm64|s390x]...
 # Sources are compiled by Debian's (cross-)compilers against packages unpacked in FOLDER, and run by
 # this machine's processor, by wine64 or by qemu-user-static. What is not installed is named.
 set -eu
@@ -57,7 +58,7 @@ build_cmocka()
     export WINEPREFIX="$folder/mingw/wine" WINEDEBUG=-all
 }
 
-for platform in ${*:-gcc-11 clang-14 mingw i386 arm64}; do
+for platform in ${*:-gcc-11 clang-14 mingw i386 arm64 s390x}; do
     programs="$core $cooker" modules=geotex-image.so more='' flags='' suffix='' run=''
     unset PKG_CONFIG_SYSROOT_DIR PKG_CONFIG_LIBDIR
     case $platform in
@@ -69,6 +70,8 @@ for platform in ${*:-gcc-11 clang-14 mingw i386 arm64}; do
         flags='-msse2 -mfpmath=sse' ;;
     arm64) needs='mmdebstrap aarch64-linux-gnu-g++ qemu-aarch64-static'
         CC=aarch64-linux-gnu-gcc CXX=aarch64-linux-gnu-g++ ;;
+    s390x) needs='mmdebstrap s390x-linux-gnu-g++ qemu-s390x-static' programs=$core modules=''
+        CC=s390x-linux-gnu-gcc CXX=s390x-linux-gnu-g++ ;;
     *) echo "$0: unknown platform $platform" >&2; exit 2 ;;
     esac
     PATH=$PATH:/usr/lib/wine
@@ -87,6 +90,8 @@ for platform in ${*:-gcc-11 clang-14 mingw i386 arm64}; do
         run="env LD_LIBRARY_PATH=$(echo "$libraries" | sed "s|/*:/|:$root/|g; s|^|$root|")" ;;
     arm64) unpack arm64 aarch64-linux-gnu
         run="qemu-aarch64-static -L $root -E LD_LIBRARY_PATH=$libraries" ;;
+    s390x) unpack s390x s390x-linux-gnu
+        run="qemu-s390x-static -L $root -E LD_LIBRARY_PATH=$libraries" ;;
     esac
     [ "${PKG_CONFIG_SYSROOT_DIR:-}" ] && CC="$CC --sysroot=$root" CXX="$CXX --sysroot=$root"
     out=$folder/$platform/release

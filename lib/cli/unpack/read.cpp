@@ -139,9 +139,7 @@ static void read_image(const std::string &path, const UnpackedMap &map, uint32_t
     const size_t count = size_t(width) * height;
     const uint8_t *texels = static_cast<const uint8_t *>(image.pixels);
     if (depth == 2) {
-        const uint16_t *codes = static_cast<const uint16_t *>(image.pixels);
-        for (size_t i = 0; i < count; ++i)
-            out.insert(out.end(), {uint8_t(codes[i]), uint8_t(codes[i] >> 8)});
+        out.insert(out.end(), texels, texels + 2 * count);
     } else if (map.map == GTX_MAP_NORMAL) {
         for (size_t i = 0; i < count; ++i)
             out.insert(out.end(), texels + 3 * i, texels + 3 * i + 2);

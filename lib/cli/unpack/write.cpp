@@ -78,7 +78,7 @@ static void write_image(const std::string &path, const UnpackedMap &map, uint32_
     if (map.map == GTX_MAP_HEIGHT && bits == 16) {
         Vector<uint16_t> codes(count);
         for (size_t i = 0; i < count; ++i)
-            codes[i] = uint16_t(texels[2 * i] | texels[2 * i + 1] << 8);
+            codes[i] = uint16_t(gtx_load_own_u16(texels + 2 * i));
         result = gtx_image_write_png16(path.c_str(), width, height, codes.data(), &error);
     } else if (map.map == GTX_MAP_NORMAL) { /* two channels would be grey and alpha */
         Vector<uint8_t> rgb(count * 3);

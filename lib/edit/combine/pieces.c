@@ -60,9 +60,9 @@ static void write_surface(const writer *w, const gtx_patch_texels *texels)
             if (!texels->occupied[t])
                 continue;
             const uint32_t code = convert_code(w, gtx_height_code(source, w->from, i, j));
-            height[0] = (uint8_t)code;
+            height[GTX_BIG_ENDIAN && w->out->info.height_bits == 16] = (uint8_t)code;
             if (w->out->info.height_bits == 16)
-                height[1] = (uint8_t)(code >> 8);
+                height[!GTX_BIG_ENDIAN] = (uint8_t)(code >> 8);
             texels->trims[t] = w->piece->trim ? w->piece->trim[(size_t)j * w->from->rect[2] + i]
                                               : (uint8_t)gtx_trim_code(source, w->from, i, j);
             const uint8_t *normal = gtx_edit_texel(source, w->from, GTX_SECTION_NORMAL, 0, i, j);
