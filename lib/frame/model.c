@@ -31,9 +31,11 @@ static double area_of(const gtx_model *model, uint32_t patch)
         square += pow((double)x[a] * y[b] - (double)x[b] * y[a], 2);
     }
     const uint32_t *first = &model->first_slab[patch];
-    for (const gtx_slab *s = model->slabs + first[0]; s < model->slabs + first[1]; ++s)
+    for (uint32_t i = first[0]; i < first[1]; ++i) { /* none of a beginning without maps */
+        const gtx_slab *s = &model->slabs[i];
         if (s->low[0] <= s->high[0])
             cells += ((double)s->high[0] - s->low[0]) * ((double)s->high[1] - s->low[1]);
+    }
     return sqrt(square) * cells;
 }
 
