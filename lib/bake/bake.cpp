@@ -205,6 +205,7 @@ Maps bake(const Mesh &mesh, Partition &partition, const BakeOptions &options, Ta
     close_cuts(partition, charts, job.anchor, options.height_bits, patches, task);
     if (job.sharp)
         end_at_creases(options.height_bits, patches, task);
+    take_back_fins(job, patches, task);
     task.parallel(patches.size(),
                   [&](size_t i) { measure_patch(options.height_bits, patches[i]); });
 

@@ -25,4 +25,7 @@ void close_cuts(const Partition &partition, const Vector<uint32_t> &charts,
  * face: what they show there stands in the air. */
 void end_at_creases(unsigned height_bits, Vector<PatchMaps> &patches, Task &task);
 
+/* Takes back what is shown beyond outlines where the source is nowhere near. */
+void take_back_fins(const Job &job, Vector<PatchMaps> &patches, Task &task);
+
 } // namespace gtx::baking
