@@ -11,14 +11,16 @@
 namespace gtx::baking {
 
 /* Texels of the model from the source: what is farther is taken back, what is as near as ON stays.
- */
+ * With LONG at 0.4, where no end has to be met: the chair has 34 wall pixels, and 82 at 0.5, 0.25
+ * and 0.5. */
 constexpr double AWAY = 0.4, ON = 0.1;
-/* Texels of the model that a cell has to show past its outline, as steep as it is. */
+/* Texels of the model that a cell has to show past its outline, as steep as it is. At 0.4 venus has
+ * 3 hole pixels, and a cook takes 1.4 % longer (bunny). */
 constexpr double LONG = 0.6;
 /* Texels that another height field may be off, and texels outside its outline to which it counts,
- * where it meets an end. */
+ * where it meets an end. Where none has to, Spot's control mesh has a hole. */
 constexpr double MISSED = 0.3, REACHED = 0.1;
-/* Samples along a cell, less one. */
+/* Samples along a cell, less one. At half the gargoyle has 110 wall pixels for 92. */
 constexpr uint8_t PARTS = 4;
 /* A limit on time: looks at the source, and at other height fields, for a sample. */
 constexpr size_t LOOKS = 256;
@@ -120,13 +122,10 @@ void Fins::collect()
         }
 }
 
-/* Whether another height field is where the samples of a cell begin. Where the model ends none has
- * to be. */
+/* Whether another height field is where the samples of a cell begin, at the model's own border too:
+ * parts that touch are often not joined. */
 bool Fins::is_met(size_t first, size_t end, const HeightFields &fields, Budget &budget) const
 {
-    const std::array<size_t, 4> at = corners(samples_[first].cell);
-    if (std::all_of(at.begin(), at.end(), [&](size_t t) { return own_.at_border(t); }))
-        return true;
     size_t least = first;
     for (size_t i = first; i < end; ++i)
         if (trim_at(trim_, samples_[i].place()) < trim_at(trim_, samples_[least].place()))
