@@ -71,7 +71,7 @@ $(web_package)/%: lib/web/%
 	@mkdir -p $(@D)
 	$(Q)cp $< $@
 # Without the lines of comments, 3 KB of what a page waits for: types tell what is there.
-$(web_package)/%.js: lib/web/%.js
+$(web_package)/%.js: lib/web/%.js lib/web/web.mk
 	@mkdir -p $(@D)
 	$(Q)sed -e '/^ *\/\*.*\*\/ *$$/d' -e '/^ *\/\*/,/\*\/ *$$/d' $< > $@
 $(web_package)/LICENSE: LICENSE
