@@ -62,13 +62,11 @@ static void bind_lighting(const gtx_host_gl *gl, engine *e, gtx_host_load loader
     LOADED(PFNGLBINDBUFFERBASEPROC, BindBufferBase);
     LOADED(PFNGLGETUNIFORMBLOCKINDEXPROC, GetUniformBlockIndex);
     LOADED(PFNGLUNIFORMBLOCKBINDINGPROC, UniformBlockBinding);
-    const GLuint programs[] = {gtx_shading_program(e->shading, GTX_METHOD_CAST),
-                               gtx_shading_program(e->shading, GTX_METHOD_LOD),
-                               gtx_shading_program(e->shading, GTX_METHOD_GRID),
-                               gtx_shading_tile_program(e->shading)};
+    GLuint programs[GTX_SHADING_PROGRAMS];
+    const uint32_t count = gtx_shading_programs(e->shading, programs);
     gl->GenBuffers(1, &e->block);
     BindBufferBase(GL_UNIFORM_BUFFER, BLOCK, e->block);
-    for (int i = 0; i < 4 && programs[i]; ++i) {
+    for (uint32_t i = 0; i < count; ++i) {
         UniformBlockBinding(programs[i], GetUniformBlockIndex(programs[i], "gtx_lighting"), BLOCK);
         gl->UseProgram(programs[i]);
         gl->Uniform1i(gl->GetUniformLocation(programs[i], "gtx_shadow_map"), SHADOW_UNIT);

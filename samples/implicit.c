@@ -48,7 +48,8 @@ static gtx_result drill(const gtx_host_gl *gl, world *w, const gtx_asset *asset,
                                         {{0.15f, 1.5f, 9}, 0, {0, 0, -1}, 0},
                                         {{0.5f, 9, 0.2f}, 0, {0, -1, 0}, 0}};
     const gtx_rays_desc desc = {.assets = &asset, .asset_count = 1, .max_instances = 1};
-    const GLuint program = gtx_shading_program(w->shading, GTX_METHOD_CAST);
+    uint32_t programs[GTX_SHADING_PROGRAMS];
+    const uint32_t count = gtx_shading_programs(w->shading, programs);
     gtx_scene_instance known = {0};
     gtx_ray_instance placed = {0};
     gtx_caster *caster = NULL;
@@ -68,9 +69,11 @@ static gtx_result drill(const gtx_host_gl *gl, world *w, const gtx_asset *asset,
     for (int i = 0; i < 4 * HOLES; ++i) /* the radius, or a coordinate of the centre */
         holes[i / 4][i % 4] = i % 4 == 3 ? 0.3f : rays[i / 4].origin[i % 4] +
             fminf(hits[i / 4].t, 99) * rays[i / 4].direction[i % 4];
-    gtx_rays_bind(w->renderer, cast, program);
-    gl->UseProgram(program);
-    gl->Uniform4fv(gl->GetUniformLocation(program, "holes"), HOLES, holes[0]);
+    for (uint32_t i = 0; i < count; ++i) {
+        gtx_rays_bind(w->renderer, cast, programs[i]);
+        gl->UseProgram(programs[i]);
+        gl->Uniform4fv(gl->GetUniformLocation(programs[i], "holes"), HOLES, holes[0]);
+    }
     gtx_scene_destroy(scene);
     gtx_caster_destroy(caster);
     return result;

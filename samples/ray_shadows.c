@@ -24,7 +24,7 @@ typedef struct world {
     gtx_renderer *renderer;
     gtx_shading *shading;
     gtx_instance instances[INSTANCES];
-    GLuint programs[4];
+    uint32_t programs[1 + GTX_SHADING_PROGRAMS], program_count;
 } world;
 
 /* Draws the map and binds it for the programs. */
@@ -45,7 +45,7 @@ static gtx_result shine(const gtx_host_gl *gl, world *w, gtx_error *error)
     gtx_target_begin(gl, &map);
     gtx_polygons_draw(gl, &w->plain, &w->ground, NULL, &v);
     result = gtx_draw(w->renderer, &v, w->instances, INSTANCES, error);
-    for (int i = 0; i < 4; ++i) {
+    for (uint32_t i = 0; i < w->program_count; ++i) {
         gl->UseProgram(w->programs[i]);
         gtx_set_matrix(gl, w->programs[i], "sun_clip", clip);
         gtx_set_vector(gl, w->programs[i], "to_sun", to_sun);
@@ -65,7 +65,7 @@ static gtx_result make_rays(world *w, const gtx_asset *asset, gtx_error *error)
         memcpy(placed[i].transform, w->instances[i].transform, sizeof placed[i].transform);
     if (!result)
         result = gtx_rays_place(w->renderer, rays, placed, INSTANCES, error);
-    for (int i = 0; !result && i < 4; ++i)
+    for (uint32_t i = 0; !result && i < w->program_count; ++i)
         gtx_rays_bind(w->renderer, rays, w->programs[i]);
     return result;
 }
@@ -105,9 +105,7 @@ static gtx_result load(const gtx_host_gl *gl, gtx_host_load loader, void *user, 
                          w->instances[i].transform);
     }
     w->programs[0] = w->polygon.program;
-    w->programs[1] = gtx_shading_program(w->shading, GTX_METHOD_CAST);
-    w->programs[2] = gtx_shading_program(w->shading, GTX_METHOD_LOD);
-    w->programs[3] = gtx_shading_program(w->shading, GTX_METHOD_GRID);
+    w->program_count = 1 + gtx_shading_programs(w->shading, w->programs + 1);
     result = make_rays(w, asset, error);
     gtx_close(asset);
     return result ? result : shine(gl, w, error);
@@ -127,7 +125,7 @@ static gtx_result draw(const gtx_host_gl *gl, const float view[16], const float 
     gl->Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     gl->Enable(GL_DEPTH_TEST);
     for (int way = 0; !result && way < 4; ++way) {
-        for (int i = 0; i < 4; ++i) {
+        for (uint32_t i = 0; i < w->program_count; ++i) {
             gl->UseProgram(w->programs[i]);
             gtx_set_vector(gl, w->programs[i], "way", (float[4]){(float)way});
         }

@@ -65,7 +65,7 @@ static gtx_result draw_all(const gtx_host_gl *gl, const world *w, const gtx_view
     return gtx_draw(w->renderer, v, w->instances, INSTANCES, error);
 }
 
-/* Draws the map and binds it for both programs. */
+/* Draws the map and binds it for all programs. */
 static gtx_result shine(const gtx_host_gl *gl, const world *w, gtx_error *error)
 {
     const gtx_camera sun = {.target = {0, 0.8f, 0}, .radius = 5, .azimuth = -52, .elevation = 38,
@@ -84,9 +84,10 @@ static gtx_result shine(const gtx_host_gl *gl, const world *w, gtx_error *error)
         return result;
     gtx_target_begin(gl, &map);
     result = draw_all(gl, w, &v, &plain, error);
-    static const gtx_method methods[] = {GTX_METHOD_CAST, GTX_METHOD_LOD, GTX_METHOD_GRID};
-    for (int i = 0; i < 4; ++i) {
-        const GLuint p = i ? gtx_shading_program(w->shading, methods[i - 1]) : w->polygon.program;
+    uint32_t programs[1 + GTX_SHADING_PROGRAMS] = {w->polygon.program};
+    const uint32_t count = 1 + gtx_shading_programs(w->shading, programs + 1);
+    for (uint32_t i = 0; i < count; ++i) {
+        const GLuint p = programs[i];
         gl->UseProgram(p);
         gtx_set_matrix(gl, p, "sun_clip", clip);
         gtx_set_vector(gl, p, "to_sun", to_sun);

@@ -2,7 +2,8 @@
  * height fields drawn as displaced grids (Cook, Shade Trees, SIGGRAPH 1984); with GTX_BLOCKS, too,
  * nodes fetch their heights. Map coordinates and the frame of normals follow from the patch's
  * record. With GTX_LIT, for geotex_lit.frag and geotex_lod_lit.frag, triangles are so small, or so
- * even, that the light at their corners is enough.
+ * even, that the light at their corners is enough; with GTX_VERTEX_NORMALS, for an engine's own
+ * main, the normals there are.
  *
  * Needs geotex_height_field.glsl and geotex_view.glsl before it, and with GTX_LIT and GTX_MATERIALS
  * geotex_surface.glsl and geotex_material.glsl. What hardly changes over a triangle is found here
@@ -77,9 +78,13 @@ GTX_VARYING(3) GTX_STEADY out vec3 gtx_eye; /* unit, over how far normals stray;
 GTX_VARYING(4) flat out vec4 gtx_between;   /* what gtx_half_way says there */
 #endif
 #else
+#ifdef GTX_VERTEX_NORMALS
+GTX_VARYING(2) out vec3 gtx_normal;         /* world space; of the front */
+#else
 GTX_VARYING(2) flat out vec3 gtx_normal_x;  /* the patch's normals -> world */
 GTX_VARYING(3) flat out vec3 gtx_normal_y;
 GTX_VARYING(4) flat out vec3 gtx_normal_z;
+#endif
 GTX_VARYING(6) GTX_STEADY out vec3 gtx_ray; /* of sight; world space, unit unless GTX_BLOCKS */
 GTX_VARYING(7) out vec3 gtx_object;         /* the point in either space; what follows costs only */
 GTX_VARYING(8) out vec3 gtx_world;          /* where a main reads it */
@@ -130,7 +135,7 @@ vec3 gtx_displaced(int index, int level)
 }
 #endif
 
-#if defined(GTX_LIT) && !defined(GTX_GRID)
+#ifndef GTX_GRID
 /* Not of unit length. */
 vec3 gtx_octahedral(float code)
 {
@@ -140,6 +145,9 @@ vec3 gtx_octahedral(float code)
     return vec3(e + mix(vec2(min(z, 0.0)), vec2(max(-z, 0.0)), vec2(lessThan(e, vec2(0.0)))), z);
 }
 
+#endif
+
+#if defined(GTX_LIT) && !defined(GTX_GRID)
 vec3 gtx_shown_to(vec3 n, vec3 eye, vec3 root)
 {
     float light = gtx_diffuse(n, eye, gtx_light.xyz, GTX_LEAST_DEVIATION);
@@ -251,9 +259,16 @@ void main()
     gtx_between = gtx_half_way(vec3(0.0, 0.0, 1.0), eye, toward);
 #endif
 #else
+#ifndef GTX_VERTEX_NORMALS
     gtx_normal_x = world_normals * x;
     gtx_normal_y = world_normals * cross(z, x);
     gtx_normal_z = world_normals * z;
+#elif defined(GTX_GRID)
+    vec3 p = gtx_decode_normal(textureLod(gtx_normals, vec3(place, page), level).xy);
+    gtx_normal = normalize(world_normals * (mat3(x, cross(z, x), z) * p));
+#else
+    gtx_normal = normalize(world_normals * gtx_octahedral(float(gtx_steps.w)));
+#endif
     gtx_object = object.xyz;
     gtx_world = world;
     vec3 eye = gtx_view_eye(gtx_object_x, gtx_object_y, gtx_object_z);

@@ -6,9 +6,13 @@
  * before it. The varyings are those of geotex_lod.vert. */
 GTX_VARYING(0) in vec2 gtx_at;
 GTX_VARYING(1) flat in vec3 gtx_page;
+#ifdef GTX_VERTEX_NORMALS
+GTX_VARYING(2) in vec3 gtx_normal;
+#else
 GTX_VARYING(2) flat in vec3 gtx_normal_x;
 GTX_VARYING(3) flat in vec3 gtx_normal_y;
 GTX_VARYING(4) flat in vec3 gtx_normal_z;
+#endif
 GTX_VARYING(5) flat in vec4 gtx_color;
 GTX_VARYING(6) GTX_STEADY in vec3 gtx_ray;
 GTX_VARYING(7) in vec3 gtx_object;
@@ -45,7 +49,11 @@ bool gtx_find(out gtx_surface s)
     s.hit.level = 0;
     s.hit.back = !gl_FrontFacing;
     s.level = gtx_page.y;
+#if defined(GTX_VERTEX_NORMALS) && !defined(GTX_GRID)
+    s.deviation = GTX_LEAST_DEVIATION;
+#else
     s.deviation = gtx_page.z;
+#endif
 #ifdef GTX_TRIMMED
     return gtx_is_shown();
 #else
@@ -84,8 +92,12 @@ vec3 gtx_place()
 
 vec3 gtx_world_normal(gtx_surface s)
 {
+#ifdef GTX_VERTEX_NORMALS
+    vec3 n = normalize(gtx_normal);
+#else
     vec3 p = gtx_decode_normal(textureLod(gtx_normals, gtx_place(), gtx_page.y).xy);
     vec3 n = normalize(gtx_normal_x * p.x + gtx_normal_y * p.y + gtx_normal_z * p.z);
+#endif
     return gl_FrontFacing ? n : gtx_from_behind(n, gtx_sight());
 }
 

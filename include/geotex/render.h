@@ -92,22 +92,22 @@ GTX_API void gtx_model_destroy(gtx_renderer *renderer, gtx_model *model);
  * geotex_fragment.glsl, which declares the functions to call, and for LOD meshes and displaced
  * grids after geotex_lod_fragment.glsl, with GTX_LOD defined. geotex_material.glsl and
  * geotex_rays.glsl (see gtx_rays_bind) are included too. `text` must have no #version, may use
- * texture units 8 to 12 for its samplers, and is not kept. Compilers' messages number its lines
- * from 1, as string 1. The shading is allocated from the renderer's allocator; free it with
- * gtx_shading_destroy.
+ * texture units 8 to 12 for its samplers, and is not kept. A line `#pragma geotex tiles` promises
+ * that it gets everything about a fragment from geotex's functions; only then is it cast by tiles,
+ * where the renderer does so and the view asks for it (GTX_VIEW_SHADING_BY_TILES). Compilers'
+ * messages number its lines from 1, as string 1. The shading is allocated from the renderer's
+ * allocator; free it with gtx_shading_destroy.
  * Errors: ARGUMENT, MEMORY, SHADER (the renderer's log says why). */
 GTX_API gtx_result gtx_shading_create(gtx_renderer *renderer, const char *text, gtx_shading **out,
                                       gtx_error *error);
 /* A NULL shading is fine. */
 GTX_API void gtx_shading_destroy(gtx_renderer *renderer, gtx_shading *shading);
-/* The GL name of the shading's program for one method, for setting the engine's own uniforms
- * between draws. GTX_METHOD_AUTO uses the programs of CAST, LOD and GRID: set the uniforms of all
- * three. */
-GTX_API uint32_t gtx_shading_program(const gtx_shading *shading, gtx_method method);
-/* The same of the program that casts by tiles (GTX_VIEW_SHADING_BY_TILES). It exists if the text
- * has the line `#pragma geotex tiles`, which promises that the text gets everything about a
- * fragment from geotex's functions. 0 otherwise, and if the renderer does not cast by tiles. */
-GTX_API uint32_t gtx_shading_tile_program(const gtx_shading *shading);
+/* The GL names of the shading's programs, one for each way in which something is drawn, for setting
+ * the engine's own uniforms between draws: in all of them. The first is that which casts in
+ * fragments. Returns how many they are. */
+enum { GTX_SHADING_PROGRAMS = 8 };
+GTX_API uint32_t gtx_shading_programs(const gtx_shading *shading,
+                                      uint32_t out[GTX_SHADING_PROGRAMS]);
 
 /* Draws the instances into the bound framebuffer, which must have a depth buffer: writes depth and
  * the outputs of view->pass. In the forward pass a model with materials or emission is shaded by

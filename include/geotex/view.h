@@ -49,7 +49,9 @@ enum { /* gtx_view.flags */
     GTX_VIEW_RESTORE_STATE = 4,       /* OpenGL: save the state that the draw changes, restore it */
     GTX_VIEW_SHADING_BY_TILES = 8,    /* also cast by tiles with an engine's own shading, where
                                          tiles are used (gtx_tiling) and the shading has a program
-                                         (gtx_shading_tile_program) or pipeline for it */
+                                         or pipeline for it */
+    GTX_VIEW_SHADING_SOLID = 64,      /* an engine's own shading discards nothing that gtx_find
+                                         finds: what it hides need not be drawn */
     GTX_VIEW_BY_SAMPLES = 32,         /* cast once per sample, not by tiles, so that multisampling
                                          smooths the outlines of casts as it does those of polygons.
                                          OpenGL: where the context has sample shading; Vulkan: with

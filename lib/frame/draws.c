@@ -1,7 +1,6 @@
 /* The draws of a frame: runs of alike instances by an LOD mesh, cast, or patch by patch, each in
  * its own way. */
-#include "frame/pipelines.h"
-#include "frame/planner.h"
+#include "frame/techniques.h"
 
 #include <string.h>
 
@@ -12,21 +11,6 @@ typedef struct run {
     uint8_t way;              /* as gtx_choose has it */
     bool mirrored;
 } run;
-
-static gtx_material_kind material_of(const gtx_model *model)
-{
-    if (model->emission_scale > 0)
-        return MATERIAL_MAPS;
-    if (model->has_material)
-        return model->has_constant_material ? MATERIAL_CONSTANT : MATERIAL_MAPS;
-    return model->has_color ? MATERIAL_COLORS : MATERIAL_NONE;
-}
-
-/* Whether the frame is shaded by an engine's own main. */
-static bool is_own(const gtx_draw_call *call)
-{
-    return call->view->pass == GTX_PASS_FORWARD && (call->view->shading || call->planner->own_main);
-}
 
 /* Constants of a model; the others are those of the frame, or of a draw. */
 static void set_model(gtx_constants *c, const gtx_model *model)
@@ -44,17 +28,9 @@ static gtx_frame_draw draw_of(const gtx_draw_call *call, const run *r, gtx_techn
                               uint32_t first, uint32_t count)
 {
     return (gtx_frame_draw){
-        .pipeline = gtx_pipeline_of(technique, call->view->pass, material_of(r->model)),
+        .pipeline = gtx_pipeline_of(technique, call->view->pass, gtx_material_of(r->model)),
         .clockwise = r->mirrored, .model = r->model, .first_instance = first,
         .instance_count = count, .constants = &call->planner->constants, .index_size = 4};
-}
-
-static gtx_technique cast_technique(const gtx_draw_call *call, bool box)
-{
-    return is_own(call)                              ? TECHNIQUE_OWN_CAST
-           : call->view->method == GTX_METHOD_PAPER ? TECHNIQUE_PAPER
-           : box                                     ? TECHNIQUE_BOX
-                                                     : TECHNIQUE_CAST;
 }
 
 /* Casts in proxies. Boxes are drawn by their back faces, so that a camera inside still sees the
@@ -62,7 +38,7 @@ static gtx_technique cast_technique(const gtx_draw_call *call, bool box)
 static void cast_ranges(const gtx_draw_call *call, const run *r, bool box, uint32_t instance,
                         uint32_t count, const gtx_range *ranges, uint32_t range_count)
 {
-    gtx_frame_draw draw = draw_of(call, r, cast_technique(call, box), instance, count);
+    gtx_frame_draw draw = draw_of(call, r, gtx_cast_technique(call, box), instance, count);
     draw.cull = box ? GTX_CULL_FRONT : GTX_CULL_BACK;
     draw.vertices = GTX_BUFFER_PROXY_VERTICES;
     draw.indices = GTX_BUFFER_PROXY_INDICES;
@@ -100,7 +76,7 @@ static bool cast_tiles(const gtx_draw_call *call, const run *r, uint32_t instanc
         {16ull * tiles->record_texels, 16ull * tiles->slab_texels, 16ull * tiles->head_texels,
          16ull * tiles->list_texels}};
     const gtx_range corners = {.count = tiles->corner_count};
-    const gtx_technique technique = is_own(call) ? TECHNIQUE_OWN_TILES : TECHNIQUE_TILES;
+    const gtx_technique technique = gtx_is_own(call) ? TECHNIQUE_OWN_TILES : TECHNIQUE_TILES;
     gtx_frame_draw draw = draw_of(call, r, technique, instance, 1);
     draw.vertices = GTX_BUFFER_TILE_CORNERS;
     draw.index_size = 0;
@@ -132,13 +108,6 @@ static void cast_plan(const gtx_draw_call *call, const run *r, uint32_t instance
     cast_ranges(call, r, false, instance, 1, plan->ranges + first, plan->hull_count);
 }
 
-/* Whether a level is lit at its vertices, both sides in one pass. */
-static bool is_lit(const gtx_draw_call *call, const run *r, uint32_t level)
-{
-    return call->view->pass == GTX_PASS_FORWARD && !is_own(call) &&
-           r->model->lods.levels[level].lit && material_of(r->model) == MATERIAL_NONE;
-}
-
 /* Patches of a level that are seen from one side or from two, by the technique for front faces or
  * the one for all. */
 static void draw_side(const gtx_draw_call *call, const run *r, uint32_t level,
@@ -146,11 +115,8 @@ static void draw_side(const gtx_draw_call *call, const run *r, uint32_t level,
 {
     gtx_planner *planner = call->planner;
     const gtx_lod_level *l = &r->model->lods.levels[level];
-    const gtx_technique technique = is_own(call)             ? TECHNIQUE_OWN_LOD
-                                    : is_lit(call, r, level) ? TECHNIQUE_LOD_LIT
-                                    : front                  ? TECHNIQUE_LOD_FRONT
-                                                             : TECHNIQUE_LOD;
-    gtx_frame_draw draw = draw_of(call, r, technique, r->first, r->count);
+    gtx_frame_draw draw =
+        draw_of(call, r, gtx_lod_technique(call, r->model, level, front), r->first, r->count);
     draw.cull = cull;
     draw.vertices = GTX_BUFFER_LOD_VERTICES;
     draw.indices = GTX_BUFFER_LOD_INDICES;
@@ -171,31 +137,18 @@ static void draw_side(const gtx_draw_call *call, const run *r, uint32_t level,
 static void draw_lod(const gtx_draw_call *call, const run *r, uint32_t level, const uint8_t *parts)
 {
     const gtx_lod_meshes *lods = &r->model->lods;
-    bool front = call->view->pass == GTX_PASS_FORWARD && !is_own(call) && !is_lit(call, r, level);
+    const bool own = gtx_is_own(call);
+    bool front = call->view->pass == GTX_PASS_FORWARD && !own && !gtx_is_lit(call, r->model, level);
     for (uint32_t i = 0; i < r->count; ++i)
         front = front && gtx_keeps_angles(&call->planner->instances[r->first + i]);
     if (lods->one_sided)
         draw_side(call, r, level, parts, false, front, GTX_CULL_BACK);
     if (lods->one_sided == lods->patch_count)
         return;
-    const bool twice = front && !call->planner->on_gpu;
+    const bool twice = (front || own) && !call->planner->on_gpu;
     if (twice)
         draw_side(call, r, level, parts, true, true, GTX_CULL_BACK);
     draw_side(call, r, level, parts, true, false, twice ? GTX_CULL_FRONT : GTX_CULL_NONE);
-}
-
-static gtx_technique grid_technique(const gtx_draw_call *call, uint32_t looks, bool keeps_angles)
-{
-    static const gtx_technique techniques[2][2] = {
-        {TECHNIQUE_GRID_WHOLE, TECHNIQUE_GRID_WHOLE_FRONT},
-        {TECHNIQUE_GRID, TECHNIQUE_GRID_FRONT}};
-    const bool forward = call->view->pass == GTX_PASS_FORWARD, whole = !(looks & GTX_GRID_TRIMMED);
-    const bool front = forward && keeps_angles && !(looks & GTX_GRID_BEHIND);
-    if (is_own(call))
-        return TECHNIQUE_OWN_GRID;
-    if (forward && !(looks & GTX_GRID_MAPPED))
-        return whole ? TECHNIQUE_GRID_WHOLE_LIT : TECHNIQUE_GRID_LIT;
-    return techniques[!whole][front];
 }
 
 /* Displaced grids. */
@@ -211,7 +164,7 @@ static void draw_grids(const gtx_draw_call *call, const run *r, uint32_t instanc
         if (!all.count)
             continue;
         gtx_frame_draw draw =
-            draw_of(call, r, grid_technique(call, looks, keeps_angles), instance, 1);
+            draw_of(call, r, gtx_grid_technique(call, looks, keeps_angles), instance, 1);
         draw.vertices = GTX_BUFFER_GRID_VERTICES;
         draw.indices = GTX_BUFFER_GRID_INDICES;
         draw.ranges = &all;
@@ -231,19 +184,14 @@ static void draw_grids(const gtx_draw_call *call, const run *r, uint32_t instanc
 /* Blocks that the GPU displaces; those seen from two sides in one pass: vertices take most. */
 static void draw_blocks(const gtx_draw_call *call, const run *r, uint32_t instance)
 {
-    static const gtx_technique techniques[2][2] = {
-        {TECHNIQUE_BLOCKS_WHOLE, TECHNIQUE_BLOCKS_WHOLE_FRONT},
-        {TECHNIQUE_BLOCKS, TECHNIQUE_BLOCKS_FRONT}};
     static const gtx_range whole = {.count = 3 * GTX_BLOCK_TRIANGLES};
     gtx_grids *grids = &call->planner->grids;
     const bool angles = gtx_keeps_angles(&call->planner->instances[instance]);
     for (uint32_t look = 0; look < GTX_BLOCK_LOOKS; ++look) {
-        const bool two_sided = look & GTX_BLOCKS_TWO_SIDED, trimmed = look & GTX_BLOCKS_TRIMMED;
-        const bool front = angles && !two_sided && call->view->pass == GTX_PASS_FORWARD;
-        const gtx_technique by = is_own(call) ? TECHNIQUE_OWN_BLOCKS : techniques[trimmed][front];
         const uint32_t count = grids->block_count[look];
-        gtx_frame_draw draw = draw_of(call, r, by, instance, count);
-        draw.cull = two_sided ? GTX_CULL_NONE : GTX_CULL_BACK;
+        gtx_frame_draw draw =
+            draw_of(call, r, gtx_block_technique(call, look, angles), instance, count);
+        draw.cull = look & GTX_BLOCKS_TWO_SIDED ? GTX_CULL_NONE : GTX_CULL_BACK;
         draw.vertices = GTX_BUFFER_BLOCKS;
         draw.indices = GTX_BUFFER_GRID_INDICES;
         draw.index_size = sizeof *grids->block_indices;

@@ -1,7 +1,7 @@
 /* Masked depth of displaced grids: triangles fill the tiles of a picture, dot by dot. */
 #include "frame/occlusion.h"
 
-#include "frame/planner.h"
+#include "frame/techniques.h"
 
 #include <math.h>
 
@@ -60,12 +60,6 @@ static int32_t within(double value, int32_t low, int32_t high)
     return (int32_t)fmin(fmax(floor(value), low), high);
 }
 
-static bool may_discard(const gtx_draw_call *draw)
-{
-    return draw->view->pass == GTX_PASS_FORWARD &&
-           (draw->view->shading || draw->planner->own_main);
-}
-
 void gtx_occlusion_end(gtx_occlusion *o)
 {
     o->columns = o->rows = 0;
@@ -76,7 +70,8 @@ void gtx_occlusion_begin(gtx_occlusion *o, const gtx_draw_call *draw, const gtx_
 {
     float place[GTX_PLACE_ROWS][4];
     gtx_occlusion_end(o);
-    if (!gtx_tiles_suit(draw) || may_discard(draw))
+    if (!gtx_tiles_suit(draw) ||
+        (gtx_is_own(draw) && !(draw->view->flags & GTX_VIEW_SHADING_SOLID)))
         return;
     o->camera = gtx_camera_rows_of(draw, placed, place);
     for (int r = 0; r < 2; ++r)

@@ -21,6 +21,7 @@ typedef struct technique_files {
 #define GRID "#define GTX_GRID\n"
 #define TRIMMED "#define GTX_TRIMMED\n"
 #define LIT "#define GTX_LIT\n"
+#define NORMALS "#define GTX_VERTEX_NORMALS\n"
 #define BLOCKS GRID "#define GTX_BLOCKS\n"
 #define ALL_MAPS {MATERIAL_MAPS, MATERIAL_MAPS, MATERIAL_MAPS, MATERIAL_MAPS}
 #define ALL_BUT_CONSTANT {MATERIAL_NONE, MATERIAL_COLORS, MATERIAL_MAPS, MATERIAL_MAPS}
@@ -85,8 +86,16 @@ static const technique_files techniques[TECHNIQUE_COUNT] = {
     /* Polygons, for mains that tell them apart. */
     [TECHNIQUE_OWN_LOD] = {"LOD mesh, own", "geotex_lod.vert", "#define GTX_LOD\n",
                            {"geotex_lod_fragment.glsl", "geotex_rays.glsl"}, NULL, ALL_MAPS},
+    [TECHNIQUE_OWN_LOD_NORMALS] = {"LOD mesh with normals, own", "geotex_lod.vert",
+                                   "#define GTX_LOD\n" NORMALS,
+                                   {"geotex_lod_fragment.glsl", "geotex_rays.glsl"}, NULL,
+                                   ALL_MAPS},
     [TECHNIQUE_OWN_GRID] = {"grid, own", "geotex_lod.vert", "#define GTX_LOD\n" GRID TRIMMED,
                             {"geotex_lod_fragment.glsl", "geotex_rays.glsl"}, NULL, ALL_MAPS},
+    [TECHNIQUE_OWN_GRID_NORMALS] = {"whole grid with normals, own", "geotex_lod.vert",
+                                    "#define GTX_LOD\n" GRID NORMALS,
+                                    {"geotex_lod_fragment.glsl", "geotex_rays.glsl"}, NULL,
+                                    ALL_MAPS},
     [TECHNIQUE_OWN_BLOCKS] = {"blocks, own", "geotex_lod.vert",
                               "#define GTX_LOD\n" BLOCKS TRIMMED,
                               {"geotex_lod_fragment.glsl", "geotex_rays.glsl"}, NULL, ALL_MAPS},
@@ -162,7 +171,7 @@ gtx_technique gtx_pipeline_technique(uint32_t pipeline)
 bool gtx_technique_is_grid(gtx_technique technique)
 {
     return (technique >= TECHNIQUE_GRID && technique <= TECHNIQUE_GRID_WHOLE_LIT) ||
-           technique == TECHNIQUE_OWN_GRID;
+           technique == TECHNIQUE_OWN_GRID || technique == TECHNIQUE_OWN_GRID_NORMALS;
 }
 
 bool gtx_technique_is_blocks(gtx_technique technique)
@@ -193,7 +202,8 @@ static bool is_lod(gtx_technique technique)
 {
     return technique == TECHNIQUE_LOD || technique == TECHNIQUE_LOD_FRONT ||
            technique == TECHNIQUE_LOD_SINGLE ||
-           technique == TECHNIQUE_LOD_LIT || technique == TECHNIQUE_OWN_LOD;
+           technique == TECHNIQUE_LOD_LIT || technique == TECHNIQUE_OWN_LOD ||
+           technique == TECHNIQUE_OWN_LOD_NORMALS;
 }
 
 static bool is_cast(gtx_technique technique)

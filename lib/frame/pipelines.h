@@ -28,7 +28,9 @@ typedef enum gtx_technique {
     TECHNIQUE_BLOCKS_WHOLE_FRONT,
     TECHNIQUE_OWN_CAST,       /* by an engine's own main */
     TECHNIQUE_OWN_LOD,
+    TECHNIQUE_OWN_LOD_NORMALS,  /* with those of vertices; both sides in one pass */
     TECHNIQUE_OWN_GRID,
+    TECHNIQUE_OWN_GRID_NORMALS, /* those that show whole, with normals of vertices */
     TECHNIQUE_OWN_BLOCKS,
     TECHNIQUE_OWN_TILES,
     TECHNIQUE_COUNT

@@ -98,7 +98,7 @@ static gtx_result check(const gtx_planner *planner, const gtx_view *view,
 {
     const uint32_t flags = GTX_VIEW_REVERSED_Z | GTX_VIEW_DEPTH_ZERO_TO_ONE |
                            GTX_VIEW_RESTORE_STATE | GTX_VIEW_SHADING_BY_TILES | GTX_VIEW_LINEAR |
-                           GTX_VIEW_BY_SAMPLES;
+                           GTX_VIEW_BY_SAMPLES | GTX_VIEW_SHADING_SOLID;
     if (!planner || !view || (count && !instances))
         return gtx_fail(error, GTX_ERROR_ARGUMENT,
                         "a draw needs a renderer or planner, a view and instances");

@@ -3,7 +3,7 @@
 
 #include "frame/order.h"
 #include "frame/project.h"
-#include "frame/planner.h"
+#include "frame/techniques.h"
 
 #include <string.h>
 
@@ -243,9 +243,8 @@ bool gtx_tiles_suit(const gtx_draw_call *draw)
 {
     const uint32_t most = 65528; /* corners are counted in 16 bits */
     const gtx_view *view = draw->view;
-    const bool own = view->shading || (draw->planner->own_main && !view->pass);
-    if ((own && !(view->flags & GTX_VIEW_SHADING_BY_TILES)) || view->flags & GTX_VIEW_BY_SAMPLES ||
-        view->other)
+    if ((gtx_is_own(draw) && !(view->flags & GTX_VIEW_SHADING_BY_TILES)) ||
+        view->flags & GTX_VIEW_BY_SAMPLES || view->other)
         return false;
     return draw->planner->tiles.max_texels &&
            view->method != GTX_METHOD_PAPER && view->viewport_width > 0 &&

@@ -63,7 +63,7 @@ gtx_result gtx_draw(gtx_renderer *renderer, const gtx_view *view, const gtx_inst
     gtx_view own;
     gtx_state state;
     gtx_frame frame;
-    if (view && view->shading && !view->shading->tiles.object) {
+    if (view && view->shading && !gtx_shading_has(view->shading, TECHNIQUE_OWN_TILES)) {
         own = *view;
         own.flags &= ~(uint32_t)GTX_VIEW_SHADING_BY_TILES;
         view = &own;

@@ -168,11 +168,6 @@ void gtx_programs_destroy(gtx_renderer *renderer)
             renderer->gl.DeleteProgram(renderer->programs[i].object);
 }
 
-static uint32_t own_pipeline(gtx_technique technique)
-{
-    return gtx_pipeline_of(technique, GTX_PASS_FORWARD, MATERIAL_MAPS);
-}
-
 gtx_result gtx_shading_create(gtx_renderer *renderer, const char *text, gtx_shading **out,
                               gtx_error *error)
 {
@@ -182,19 +177,16 @@ gtx_result gtx_shading_create(gtx_renderer *renderer, const char *text, gtx_shad
     gtx_shading *shading = gtx_alloc_array(&renderer->allocator, 1, sizeof *shading);
     if (!shading)
         return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for a shading");
-    const struct {
-        gtx_technique technique;
-        gtx_program *program;
-    } made[] = {{TECHNIQUE_OWN_CAST, &shading->cast},
-                {TECHNIQUE_OWN_LOD, &shading->lod},
-                {renderer->planner.on_gpu ? TECHNIQUE_OWN_BLOCKS : TECHNIQUE_OWN_GRID,
-                 &shading->grid}};
+    /* Mains that do not say so may read what tiles do not have. */
+    const bool tiles = renderer->gl.TexBuffer && strstr(text, "#pragma geotex tiles");
     gtx_result result = GTX_OK;
-    for (int i = 0; i < 3 && !result; ++i)
-        result = build(renderer, own_pipeline(made[i].technique), text, made[i].program, error);
-    /* Others may read what tiles do not have. */
-    if (!result && renderer->gl.TexBuffer && strstr(text, "#pragma geotex tiles"))
-        result = build(renderer, own_pipeline(TECHNIQUE_OWN_TILES), text, &shading->tiles, error);
+    for (int i = 0; i < OWN_TECHNIQUE_COUNT && !result; ++i) {
+        const gtx_technique technique = (gtx_technique)(TECHNIQUE_OWN_CAST + i);
+        if ((technique != TECHNIQUE_OWN_TILES || tiles) &&
+            !is_displaced_otherwise(renderer, technique))
+            result = build(renderer, gtx_pipeline_of(technique, GTX_PASS_FORWARD, MATERIAL_MAPS),
+                           text, &shading->programs[i], error);
+    }
     if (result)
         gtx_shading_destroy(renderer, shading);
     else
@@ -206,21 +198,19 @@ void gtx_shading_destroy(gtx_renderer *renderer, gtx_shading *shading)
 {
     if (!shading)
         return;
-    renderer->gl.DeleteProgram(shading->cast.object);
-    renderer->gl.DeleteProgram(shading->lod.object);
-    renderer->gl.DeleteProgram(shading->grid.object);
-    renderer->gl.DeleteProgram(shading->tiles.object);
+    for (int i = 0; i < OWN_TECHNIQUE_COUNT; ++i)
+        renderer->gl.DeleteProgram(shading->programs[i].object);
     gtx_free_array(&renderer->allocator, shading, 1, sizeof *shading);
 }
 
-uint32_t gtx_shading_program(const gtx_shading *shading, gtx_method method)
-{
-    return method == GTX_METHOD_LOD    ? shading->lod.object
-           : method == GTX_METHOD_GRID ? shading->grid.object
-                                       : shading->cast.object;
-}
+_Static_assert((int)OWN_TECHNIQUE_COUNT <= (int)GTX_SHADING_PROGRAMS,
+               "render.h makes room for all");
 
-uint32_t gtx_shading_tile_program(const gtx_shading *shading)
+uint32_t gtx_shading_programs(const gtx_shading *shading, uint32_t out[GTX_SHADING_PROGRAMS])
 {
-    return shading->tiles.object;
+    uint32_t count = 0;
+    for (int i = 0; i < OWN_TECHNIQUE_COUNT; ++i)
+        if (shading->programs[i].object)
+            out[count++] = shading->programs[i].object;
+    return count;
 }

@@ -17,11 +17,17 @@ typedef struct gtx_program {
     gl_int tint, instance;    /* of what is cast by tiles */
 } gtx_program;
 
-/* In the order of TECHNIQUE_OWN_CAST and those behind it. */
+enum { OWN_TECHNIQUE_COUNT = TECHNIQUE_COUNT - TECHNIQUE_OWN_CAST };
+
 struct gtx_shading {
-    gtx_program cast, lod, grid;
-    gtx_program tiles;        /* 0 where the context or the main has none */
+    /* From TECHNIQUE_OWN_CAST on; without an object where the context or the main has none. */
+    gtx_program programs[OWN_TECHNIQUE_COUNT];
 };
+
+static inline bool gtx_shading_has(const gtx_shading *shading, gtx_technique technique)
+{
+    return shading->programs[technique - TECHNIQUE_OWN_CAST].object != 0;
+}
 
 /* Compiles what a technique needs for a pass, with any material. Errors: SHADER. */
 gtx_result gtx_programs_need(gtx_renderer *renderer, gtx_technique technique, gtx_pass pass,

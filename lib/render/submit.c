@@ -83,15 +83,8 @@ static const gtx_program *program_of(const gtx_submission *s, const gtx_frame_dr
                                      bool single)
 {
     const gtx_technique technique = gtx_pipeline_technique(draw->pipeline);
-    const gtx_shading *shading = s->view->shading;
-    if (technique == TECHNIQUE_OWN_CAST)
-        return &shading->cast;
-    if (technique == TECHNIQUE_OWN_LOD)
-        return &shading->lod;
-    if (technique == TECHNIQUE_OWN_GRID || technique == TECHNIQUE_OWN_BLOCKS)
-        return &shading->grid;
-    if (technique == TECHNIQUE_OWN_TILES)
-        return &shading->tiles;
+    if (technique >= TECHNIQUE_OWN_CAST)
+        return &s->view->shading->programs[technique - TECHNIQUE_OWN_CAST];
     /* All materials are drawn alike in other passes than the forward one. */
     return &s->renderer->programs[single ? gtx_pipeline_of(TECHNIQUE_LOD_SINGLE, s->view->pass,
                                                            MATERIAL_NONE)

@@ -157,7 +157,8 @@ struct gtx_vk_shading {
     uint32_t number;
     const gtx_vk_rays *rays;      /* or NULL */
     VkPipelineLayout layout;
-    VkShaderModule modules[GTX_BUFFER_BLOCKS + 1]; /* by the vertices of their pipelines */
+    VkShaderModule modules[GTX_PIPELINE_COUNT]; /* by pipeline */
+    bool by_tiles;                /* there is one for them */
 };
 
 struct gtx_vk_model {

@@ -228,7 +228,7 @@ static gtx_result shade(const gtx_vk_shading *shading, gtx_view *view, gtx_error
         return gtx_fail(error, GTX_ERROR_ARGUMENT, "a shading takes the forward pass's place");
     if (view->flags & GTX_VIEW_BY_SAMPLES)
         return gtx_fail(error, GTX_ERROR_UNSUPPORTED, "a shading is not drawn by samples");
-    if (!shading->modules[GTX_BUFFER_TILE_CORNERS])
+    if (!shading->by_tiles)
         view->flags &= ~(uint32_t)GTX_VIEW_SHADING_BY_TILES;
     return GTX_OK;
 }

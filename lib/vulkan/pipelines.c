@@ -141,7 +141,7 @@ static gtx_result set_stages(gtx_vk *vk, const gtx_vk_key *key, const gtx_vk_sha
     if (result)
         return result;
     if (shading) {
-        stages[1].module = shading->modules[of->vertices];
+        stages[1].module = shading->modules[key->pipeline];
         return GTX_OK;
     }
     return module_of(vk, key->pipeline,

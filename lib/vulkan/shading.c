@@ -41,11 +41,12 @@ static gtx_result make_modules(gtx_vk *vk, const gtx_vk_shading_desc *desc, gtx_
             continue;
         if (!words || !bytes || bytes % sizeof *words)
             return gtx_fail(error, GTX_ERROR_ARGUMENT, "pipeline %u has no SPIR-V", i);
+        out->by_tiles |= of.vertices == GTX_BUFFER_TILE_CORNERS;
         const VkShaderModuleCreateInfo info = {
             .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, .codeSize = bytes,
             .pCode = words};
         result = gtx_vk_check(vk->api.CreateShaderModule(vk->device, &info, vk->callbacks,
-                                                         &out->modules[of.vertices]),
+                                                         &out->modules[i]),
                               "vkCreateShaderModule", error);
     }
     return result;

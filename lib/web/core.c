@@ -95,9 +95,11 @@ WEB_API void gtxw_shading_destroy(gtx_renderer *renderer, gtx_shading *shading)
     gtx_shading_destroy(renderer, shading);
 }
 
-WEB_API uint32_t gtxw_shading_program(const gtx_shading *shading, int method)
+/* The name of one of the shading's programs, 0 behind the last. */
+WEB_API uint32_t gtxw_shading_program(const gtx_shading *shading, uint32_t i)
 {
-    return gtx_shading_program(shading, (gtx_method)method);
+    uint32_t programs[GTX_SHADING_PROGRAMS];
+    return i < gtx_shading_programs(shading, programs) ? programs[i] : 0;
 }
 
 /* ---- assets ---- */

@@ -156,7 +156,7 @@ export class Model {
   }
 }
 
-/* Fragment mains of the page's own (gtx_shading_create). `program(method)` is the WebGLProgram. */
+/* Fragment mains of the page's own (gtx_shading_create). */
 export class Shading {
   constructor(geotex, text) {
     Object.assign(this, {geotex, text, handle: 0});
@@ -170,8 +170,9 @@ export class Shading {
     this.handle = g.around(() => core._gtxw_shading_create(g.renderer, pointer));
     core._free(pointer);
     g.must(this.handle);
-    this.programs = [Method.CAST, Method.LOD, Method.GRID].map((method) =>
-      core.GL.programs[core._gtxw_shading_program(this.handle, method)]);
+    this.programs = [];
+    for (let name; (name = core._gtxw_shading_program(this.handle, this.programs.length));)
+      this.programs.push(core.GL.programs[name]);
     this.places = this.programs.map(() => ({}));
   }
 

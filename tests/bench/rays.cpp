@@ -184,6 +184,13 @@ static void open_stage(Stage &stage, const gtx_asset *asset, const gtx_info &inf
 }
 
 /* Draws with `light` as what the surface is lit by. */
+static GLuint cast_program(const gtx_shading *shading)
+{
+    uint32_t programs[GTX_SHADING_PROGRAMS];
+    gtx_shading_programs(shading, programs);
+    return programs[0];
+}
+
 static void frame(Stage &stage, const char *name, int rays, const std::string &light)
 {
     const std::string text = "layout(location = 0) out vec4 color;\n"
@@ -202,7 +209,7 @@ static void frame(Stage &stage, const char *name, int rays, const std::string &l
     for (int i = 0; i < 16; i += 5)
         instance.transform[i] = 1;
     check(gtx_shading_create(stage.renderer, text.c_str(), &shading, &error), error);
-    gtx_rays_bind(stage.renderer, stage.rays, gtx_shading_program(shading, GTX_METHOD_CAST));
+    gtx_rays_bind(stage.renderer, stage.rays, cast_program(shading));
     stage.view.shading = shading;
     std::array<double, 5> times;
     for (size_t i = 0; i <= times.size(); ++i) { /* the first compiles */

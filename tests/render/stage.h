@@ -218,6 +218,14 @@ static inline subject subject_open(stage *s, gtx_asset *asset)
     return out;
 }
 
+/* The program that casts. */
+static inline GLuint cast_program(const gtx_shading *shading)
+{
+    uint32_t programs[GTX_SHADING_PROGRAMS];
+    gtx_shading_programs(shading, programs);
+    return programs[0];
+}
+
 static inline void subject_close(stage *s, subject *shown)
 {
     gtx_model_destroy(s->renderer, shown->model);

@@ -243,7 +243,7 @@ static void pipelines_have_shaders(void **state)
                              !p.own_main);
         }
     }
-    assert_int_equal(own, 5);
+    assert_int_equal(own, 7);
     assert_in_range(found, 40, 100);
 }
 

@@ -18,8 +18,6 @@ static void prepare_program(stage *s, const scene *c, GLuint program)
     LOADED(PFNGLGETUNIFORMBLOCKINDEXPROC, GetUniformBlockIndex);
     LOADED(PFNGLUNIFORMBLOCKBINDINGPROC, UniformBlockBinding);
     LOADED(PFNGLBINDBUFFERBASEPROC, BindBufferBase);
-    if (!program)
-        return;
     UniformBlockBinding(program, GetUniformBlockIndex(program, "gtx_lighting"), 1);
     BindBufferBase(GL_UNIFORM_BUFFER, 1, c->block);
     s->gl.UseProgram(program);
@@ -53,10 +51,10 @@ static scene open_scene(stage *s)
     s->gl.GenBuffers(1, &c.block);
     c.shadow_map = make_shadow_map(s);
     s->gl.GenTextures(1, &c.before);
-    prepare_program(s, &c, gtx_shading_program(c.shading, GTX_METHOD_CAST));
-    prepare_program(s, &c, gtx_shading_program(c.shading, GTX_METHOD_LOD));
-    prepare_program(s, &c, gtx_shading_program(c.shading, GTX_METHOD_GRID));
-    prepare_program(s, &c, gtx_shading_tile_program(c.shading));
+    uint32_t programs[GTX_SHADING_PROGRAMS];
+    const uint32_t count = gtx_shading_programs(c.shading, programs);
+    for (uint32_t i = 0; i < count; ++i)
+        prepare_program(s, &c, programs[i]);
     return c;
 }
 

@@ -219,7 +219,7 @@ static void shaders_agree_with_the_cpu(void **state)
         s->gl.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, STAGE_WIDTH, STAGE_HEIGHT, 0, GL_RGBA,
                          GL_FLOAT, NULL);
     }
-    const GLuint program = gtx_shading_program(shading, GTX_METHOD_CAST);
+    const GLuint program = cast_program(shading);
     for (uint32_t bits = 8; bits <= 16; bits += 8) {
         scene c;
         scene_open(s, bits, &c);
@@ -272,7 +272,7 @@ static void no_acne(void **state)
     must(gtx_shading_create(s->renderer, text, &shading, &error), &error);
     must(gtx_rays_create(s->renderer, &desc, &rays, &error), &error);
     must(gtx_rays_place(s->renderer, rays, &instance, 1, &error), &error);
-    const GLuint program = gtx_shading_program(shading, GTX_METHOD_CAST);
+    const GLuint program = cast_program(shading);
     gtx_camera camera = camera_around(shown.asset);
     gtx_view view = view_of(&camera);
     view.shading = shading;

@@ -36,19 +36,22 @@ static void a_main_of_the_engines_own(void **state)
     const matrix back = matrix_inverse(
         matrix_mul(matrix_of(view.projection), matrix_of(view.view)));
     const matrix to_object = matrix_inverse(matrix_of(instance.transform));
-    const int ways = gtx_shading_tile_program(shading) ? 6 : 4; /* the last two by tiles */
-    for (int i = 0; i < ways; ++i) {
+    uint32_t programs[GTX_SHADING_PROGRAMS];
+    const uint32_t count = gtx_shading_programs(shading, programs);
+    for (int i = 0; i < 8; ++i) { /* from 4 on by tiles, or as patches are chosen */
         const int world = i % 2;
         const float scale[4] = {0.2f, 0, 0, (float)world};
         long checked = 0;
-        view.method = i / 2 == 1 ? GTX_METHOD_LOD : GTX_METHOD_CAST;
+        static const gtx_method methods[] = {GTX_METHOD_CAST, GTX_METHOD_LOD, GTX_METHOD_CAST,
+                                             GTX_METHOD_GRID};
+        view.method = methods[i / 2];
         view.flags |= GTX_VIEW_SHADING_BY_TILES;
         by_tiles(&view);
         view.viewport_width = i < 4 ? 0 : STAGE_WIDTH;
-        const GLuint program = i < 4 ? gtx_shading_program(shading, view.method)
-                                     : gtx_shading_tile_program(shading);
-        s->gl.UseProgram(program);
-        s->gl.Uniform4fv(s->gl.GetUniformLocation(program, "scale"), 1, scale);
+        for (uint32_t k = 0; k < count; ++k) {
+            s->gl.UseProgram(programs[k]);
+            s->gl.Uniform4fv(s->gl.GetUniformLocation(programs[k], "scale"), 1, scale);
+        }
         stage_draw(s, &view, &instance, 1);
         for (int p = 0; p < STAGE_PIXELS; ++p) {
             if (s->depth[p] == 1)
@@ -99,7 +102,6 @@ static void not_all_mains_have_tiles(void **state)
     const gtx_camera camera = camera_around(shown.asset);
     gtx_view view = view_of(&camera);
     must(gtx_shading_create(s->renderer, text, &shading, &error), &error);
-    assert_int_equal(gtx_shading_tile_program(shading), 0);
     view.shading = shading;
     view.method = GTX_METHOD_CAST;
     view.flags |= GTX_VIEW_SHADING_BY_TILES;

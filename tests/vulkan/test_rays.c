@@ -50,7 +50,7 @@ static void draw_in_both(stage *s, gtx_host_vulkan *d, const scene *c, const gtx
     if (change)
         must(gtx_rays_update(s->renderer, c->gl_rays, 0, change, patch, &error), &error);
     must(gtx_rays_place(s->renderer, c->gl_rays, placed, INSTANCES, &error), &error);
-    gtx_rays_bind(s->renderer, c->gl_rays, gtx_shading_program(c->by_gl, GTX_METHOD_CAST));
+    gtx_rays_bind(s->renderer, c->gl_rays, cast_program(c->by_gl));
     stage_draw(s, &view, instances, INSTANCES);
     view.shading = NULL;
     const gtx_view of_own = for_vulkan(view, *camera, true);

@@ -24,19 +24,16 @@ void BenchScene::shade_own(gtx_view &view)
     gtx_error error;
     if (!own_)
         require_ok(gtx_shading_create(renderer_, own_main, &own_, &error), error);
-    const GLuint programs[] = {gtx_shading_program(own_, GTX_METHOD_CAST),
-                               gtx_shading_program(own_, GTX_METHOD_LOD),
-                               gtx_shading_program(own_, GTX_METHOD_GRID),
-                               gtx_shading_tile_program(own_)};
+    GLuint programs[GTX_SHADING_PROGRAMS];
+    const uint32_t count = gtx_shading_programs(own_, programs);
     const GLfloat light[4] = {view.light_direction[0], view.light_direction[1],
                               view.light_direction[2], view.ambient};
-    for (GLuint program : programs)
-        if (program) {
-            gl.UseProgram(program);
-            gl.Uniform4fv(gl.GetUniformLocation(program, "own_light"), 1, light);
-        }
+    for (uint32_t i = 0; i < count; ++i) {
+        gl.UseProgram(programs[i]);
+        gl.Uniform4fv(gl.GetUniformLocation(programs[i], "own_light"), 1, light);
+    }
     view.shading = own_;
-    view.flags |= GTX_VIEW_SHADING_BY_TILES;
+    view.flags |= GTX_VIEW_SHADING_BY_TILES | GTX_VIEW_SHADING_SOLID;
 }
 
 } // namespace gtx
