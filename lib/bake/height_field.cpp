@@ -67,6 +67,38 @@ bool HeightField::field_above(const Vec3d &point, double &above, double &trim) c
     return true;
 }
 
+/* Between nodes the way down from the triangle's plane is bilinear, as the height field is: nowhere
+ * is it longer than at all of them. */
+bool HeightField::surely_shows(const Vec3d (&corner)[3], double deeper, double trim,
+                               int nodes) const
+{
+    double u[3], v[3], z[3];
+    for (int k = 0; k < 3; ++k) {
+        const Vec3d from = corner[k] - origin;
+        u[k] = across(0, from);
+        v[k] = across(1, from);
+        z[k] = dot(dual[2], from);
+    }
+    const double left = std::min({u[0], u[1], u[2]}), right = std::max({u[0], u[1], u[2]});
+    const double low = std::min({v[0], v[1], v[2]}), high = std::max({v[0], v[1], v[2]});
+    if (!(left >= 0 && low >= 0 && right < w - 1 && high < h - 1) ||
+        (int(right) - int(left) + 2) * (int(high) - int(low) + 2) > nodes)
+        return false;
+    const double u1 = u[1] - u[0], v1 = v[1] - v[0], z1 = z[1] - z[0];
+    const double u2 = u[2] - u[0], v2 = v[2] - v[0], z2 = z[2] - z[0];
+    const double area = u1 * v2 - u2 * v1;
+    const double along_u = (z1 * v2 - z2 * v1) / area, along_v = (u1 * z2 - u2 * z1) / area;
+    for (int j = int(low); j <= int(high) + 1; ++j)
+        for (int i = int(left); i <= int(right) + 1; ++i) {
+            const double plane = z[0] + along_u * (i - u[0]) + along_v * (j - v[0]);
+            const uint32_t of_texel = code(at(i, j));
+            if (!of_texel || !(gtx_trim_distance(trim_[at(i, j)]) < trim) ||
+                !(height(of_texel) - plane >= -deeper))
+                return false;
+        }
+    return true;
+}
+
 CellPoint HeightField::place_of(const Vec3d &point) const
 {
     const Vec3d from = point - origin;

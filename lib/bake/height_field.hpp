@@ -82,6 +82,10 @@ public:
     /* How far above a point the height field is, along the axis, and the trim there; false where it
      * has no cell. */
     bool field_above(const Vec3d &point, double &above, double &trim) const;
+    /* Whether it has cells all over a triangle, trims below `trim` there, and is nowhere deeper
+     * below it than that, along the axis. False where the nodes around it do not say so, or are
+     * more than `nodes`. */
+    bool surely_shows(const Vec3d (&corner)[3], double deeper, double trim, int nodes) const;
     /* Whether the map comes within a texel of the box, along its sides, around two points. */
     bool reaches(const Vec3d &a, const Vec3d &b) const
     {

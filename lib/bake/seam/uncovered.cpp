@@ -210,8 +210,12 @@ double Search::uncovered_share(size_t field, const FrameInverse &inverse, uint32
     const Vec3d normal = normalize(cross(e, f));
     if (!(dot(normal, own.axis[2]) > TWISTED) || is_masked(mesh, triangle))
         return 0;
-    const bool steep = dot(normal, own.axis[2]) < STEEP;
-    const int parts = parts_of(triangle);
+    const double facing = dot(normal, own.axis[2]);
+    const bool steep = facing < STEEP;
+    const int parts = parts_of(triangle), samples = parts * (parts + 1) / 2;
+    if (!steep && own.surely_shows({first, first + e, first + f},
+                                   MAX_BELOW * job_.pitch / facing, SEEN, samples))
+        return 0;
     std::optional<Vector<const HeightField *>> near;
     int uncovered = 0;
     bool first_look = true;
@@ -238,7 +242,7 @@ double Search::uncovered_share(size_t field, const FrameInverse &inverse, uint32
                 uncovered += !by_own || parts >= LONG;
         }
     }
-    return uncovered / (parts * (parts + 1) / 2.);
+    return uncovered / double(samples);
 }
 
 /* Looks at the others for the samples of each height field. */
