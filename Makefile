@@ -111,7 +111,7 @@ room       = $(word 2,$(subst /, ,$(1)))
 # path is a folder of links to those rooms; benchmarks, samples and what is generated see all.
 path_of    = $(out)/sees/$(or $(filter $(rooms:%=lib/%) $(tests:%=tests/%),$(call folder,$(1))),all)
 folder     = $(word 1,$(subst /, ,$(1)))/$(room)
-room_flags = -I$(path_of) $(cflags_$(room)) $(quick)
+room_flags = -I$(path_of) $(cflags_$(room)) $(quick) $(test_flags)
 link_rooms = mkdir -p $(out)/sees/$(1) && \
              ln -sfn $(foreach r,$(2),$(CURDIR)/lib/$(r)) $(out)/sees/$(1) &&
 $(out)/sees/.made: Makefile
@@ -217,16 +217,12 @@ test_sources := $(filter-out $(if $(vulkan),,tests/vulkan/%),\
 test_bins    := $(patsubst %,$(out)/%,$(basename $(test_sources)))
 test_needs    = $(or $(links_$(1)),$(needs_$(1)) $(extra_needs_$(1)))
 # These run the command and the products; they link nothing of ours but the smallest room.
+$(foreach r,consumer corpus python source web,$(eval links_$(r) := base))
 links_cli      := base image
-links_consumer := base
-links_corpus   := base
 links_fuzz     := $(needs_world) export edit frame render
-links_python   := base
 links_samples  := $(needs_image)
-links_source   := base
 links_threads  := $(needs_cook) frame render host
 links_verbs    := $(needs_cli)
-links_web      := base
 extra_needs_render  := trace edit host image
 extra_needs_trace   := frame image mesh grid chart bake measure cook
 extra_needs_bake    := derive trace measure host
@@ -241,10 +237,12 @@ common_tests := $(out)/tests/common.a
 $(common_tests): $(patsubst %,$(out)/%.o,$(basename $(wildcard tests/common/*.c)))
 	$(Q)rm -f $@ && $(AR) qcs $@ $^
 
-# Debugging data stays in the objects: in 200 programs it would be 7 GB.
+# Debugging data stays in the objects: in 200 programs it would be 7 GB. Tests are compiled by -O1;
+# what they have inline as the library has it is the library's, which comes first.
 define test_rule
-$(out)/$(basename $(1)): $(out)/$(basename $(1)).o $(common_tests) \
-    $(filter-out %/cli/gtx.o,$(call objects_of,$(call test_needs,$(call room,$(1)))))
+$(out)/$(basename $(1)): \
+    $(filter-out %/cli/gtx.o,$(call objects_of,$(call test_needs,$(call room,$(1))))) \
+    $(out)/$(basename $(1)).o $(common_tests)
 	$$(say) LINK $$@
 	$$(Q)$$(CXX) $$(flags) $$(if $$(filter release,$$(config)),-Xlinker -S) $$(LDFLAGS) -o $$@ $$^ \
 	  $$(call libs_of,$$(call test_needs,$(call room,$(1)))) \
@@ -253,6 +251,7 @@ endef
 $(foreach t,$(test_sources),$(eval $(call test_rule,$(t))))
 $(out)/tests/%: cflags += -Itests -D_XOPEN_SOURCE=700 $(call pkg,--cflags,cmocka)
 $(out)/tests/%: cxxflags += -Itests $(call pkg,--cflags,cmocka)
+$(test_bins:=.o): test_flags := $(if $(filter release,$(config)),-O1)
 
 # The decoder of the specification stands alone: C99, no header of geotex.
 $(out)/gtx_decode: format/gtx_decode.c

@@ -76,7 +76,8 @@ static Vector<Scene> make_scenes(const gtx_asset *asset, const Extent &extent,
     for (uint32_t level = 0; level < options.levels; ++level)
         scenes.push_back({views, AssetView(asset, level), level, level == 0,
                           options.faults != nullptr});
-    for (uint32_t k = 0; k < DETAIL_SIZES && options.size >> k >= MIN_SIZE; ++k) {
+    const uint32_t sizes = options.details ? DETAIL_SIZES : 0;
+    for (uint32_t k = 0; k < sizes && options.size >> k >= MIN_SIZE; ++k) {
         views = views_of(options.size >> k);
         scenes.push_back({views, AssetView(asset, 0, DETAIL_PIXELS * views[0].pixel),
                           CHOSEN_LEVELS, false, options.faults != nullptr});

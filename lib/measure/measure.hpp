@@ -78,6 +78,7 @@ struct CompareOptions {
     uint32_t size = 1024;        /* pixels along a side of a view */
     uint32_t levels = 1;         /* levels of detail to evaluate */
     bool surface = true;         /* measure `error` and `seams` too */
+    bool details = true;         /* evaluate what the runtime would draw too */
     uint32_t random_views = 0;   /* beside the 26 fixed ones, of this seed */
     uint32_t seed = 0;
     Vector<PixelFault> *faults = nullptr;     /* appended to: every hole and wall pixel of every
