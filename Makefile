@@ -98,7 +98,7 @@ out := $(build)/$(config)
 Q   := $(if $(V),,@)
 say  = @printf '  %-5s %s\n'
 
-sources    = $(filter-out %/module.cpp %/geotex_netcdf.c %/write_texts.c \
+sources    = $(filter-out %/module.cpp lib/image/png_jpeg/% %/geotex_netcdf.c %/write_texts.c \
                $(if $(vulkan),,lib/host/vulkan%), \
                $(wildcard lib/$(1)/*.c* lib/$(1)/*/*.c*))
 objects    = $(patsubst %,$(out)/%.o,$(basename $(call sources,$(1)))) \
@@ -316,9 +316,9 @@ include lib/package/install.mk lib/web/web.mk lib/web/cook.mk lib/python/python.
 # ---- dependencies --------------------------------------------------------------------------------
 packages := g++ pkg-config libopenmesh-dev libeigen3-dev libdraco-dev libtinygltf-dev \
             nlohmann-json3-dev libmeshoptimizer-dev libglfw3-dev libegl-dev libgl-dev libegl1 \
-            libegl-mesa0 libgl1-mesa-dri libopenimageio-dev libgdal-dev libnetcdf-dev libzstd-dev \
-            zlib1g-dev libcmocka-dev glslang-tools $(packages_vulkan) ninja-build cmake xvfb \
-            libembree-dev python3-cffi python3-numpy python3-venv
+            libegl-mesa0 libgl1-mesa-dri libpng-dev libjpeg-dev libopenimageio-dev libgdal-dev \
+            libnetcdf-dev libzstd-dev zlib1g-dev libcmocka-dev glslang-tools $(packages_vulkan) \
+            ninja-build cmake xvfb libembree-dev python3-cffi python3-numpy python3-venv
 
 deps: ## install the Debian packages that are missing (apt-get, with sudo when not root)
 	@missing=; for p in $(packages); do \

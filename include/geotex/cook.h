@@ -7,9 +7,9 @@
  * Memory. Everything that outlives a call (the asset, the report) and everything that libgeotex
  * allocates during it comes from the descriptors' `allocator` (NULL = malloc), which is called from
  * the calling thread only. The C++ containers that hold models, charts and maps during a cook, and
- * the decoders (OpenMesh, Draco, tinygltf, meshoptimizer, zlib, OpenImageIO), use the process's
- * heap. If that runs out the result is MEMORY too, except that an image for which there is no
- * memory is ignored with a warning.
+ * the decoders (OpenMesh, Draco, tinygltf, meshoptimizer, zlib, libpng, libjpeg, OpenImageIO), use
+ * the process's heap. If that runs out the result is MEMORY too, except that an image for which
+ * there is no memory is ignored with a warning.
  *
  * Limits. limits.memory bounds what these containers hold on all threads of the call; images and
  * Draco meshes are counted before they are decoded, by the size that their headers declare. Not

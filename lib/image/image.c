@@ -1,4 +1,4 @@
-/* Opens the image module on first use; what it encodes is written as every file is. */
+/* Opens an image module on first use; what it encodes is written as every file is. */
 #include "image/image.h"
 
 #include "base/error.h"
@@ -8,21 +8,40 @@
 #include "image/open.h"
 #include "image/targa.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { MAX_PIXELS = 1 << 28 };
-static const char module_name[] = "geotex-image.so";
 
-static const gtx_image_functions *module_functions(gtx_error *error)
+static const gtx_image_functions *module_functions(int is_png_or_jpeg, gtx_error *error)
 {
+    const char *name = is_png_or_jpeg ? "geotex-png-jpeg.so" : "geotex-image.so";
+    char need[64];
+    snprintf(need, sizeof need, "images need %s", name);
     const gtx_image_functions *functions =
-        gtx_open_module(module_name, GTX_IMAGE_MODULE_SYMBOL, "images need geotex-image.so", error);
+        gtx_open_module(name, GTX_IMAGE_MODULE_SYMBOL, need, error);
     if (functions && functions->version != GTX_IMAGE_MODULE_VERSION) {
-        gtx_fail(error, GTX_ERROR_UNSUPPORTED, "%s is of another version", module_name);
+        gtx_fail(error, GTX_ERROR_UNSUPPORTED, "%s is of another version", name);
         return NULL;
     }
     return functions;
+}
+
+/* That which reads the file at `path`, or `data` where that is NULL. */
+static const gtx_image_functions *module_to_read(const char *path, const void *data, size_t size,
+                                                 gtx_error *error)
+{
+    char head[4];
+    if (path) {
+        FILE *file = fopen(path, "rb");
+        size = file ? fread(head, 1, sizeof head, file) : 0;
+        data = head;
+        if (file)
+            fclose(file);
+    }
+    return module_functions((size >= 4 && !memcmp(data, "\x89PNG", 4)) ||
+                                (size >= 3 && !memcmp(data, "\xff\xd8\xff", 3)), error);
 }
 
 static gtx_result result_of(int failed, gtx_result otherwise)
@@ -35,7 +54,7 @@ static gtx_result encode_image(gtx_image_rows rows, void **data, size_t *size, g
     char message[GTX_IMAGE_MAX_MESSAGE];
     if (!rows.pixels || !rows.width || !rows.height)
         return gtx_fail(error, GTX_ERROR_ARGUMENT, "an image without pixels or size");
-    const gtx_image_functions *module = module_functions(error);
+    const gtx_image_functions *module = module_functions(!strncmp(rows.format, "png", 3), error);
     if (!module)
         return GTX_ERROR_UNSUPPORTED;
     const int failed = module->encode(&rows, data, size, message);
@@ -133,7 +152,7 @@ static gtx_result read_image(const char *path, const void *data, size_t size, gt
     const struct own *decoder = own_of(data, size);
     if (decoder)
         return decoder->decode(data, size, MAX_PIXELS, out, error);
-    const gtx_image_functions *module = module_functions(error);
+    const gtx_image_functions *module = module_to_read(path, data, size, error);
     if (!module)
         return GTX_ERROR_UNSUPPORTED;
     const int failed = module->read(path, data, size, MAX_PIXELS, &image, message);
@@ -163,7 +182,7 @@ gtx_result gtx_image_read_raw(const char *path, gtx_raw_image *out, gtx_error *e
     gtx_raw_image image = {0};
     if (!path || !out)
         return gtx_fail(error, GTX_ERROR_ARGUMENT, "no path or no place for the image");
-    const gtx_image_functions *module = module_functions(error);
+    const gtx_image_functions *module = module_to_read(path, NULL, 0, error);
     if (!module)
         return GTX_ERROR_UNSUPPORTED;
     const int failed = module->read_raw(path, MAX_PIXELS, &image, message);
@@ -179,7 +198,7 @@ gtx_result gtx_image_read_values(const char *path, gtx_value_image *out, gtx_err
     gtx_value_image image = {0};
     if (!path || !out)
         return gtx_fail(error, GTX_ERROR_ARGUMENT, "no path or no place for the image");
-    const gtx_image_functions *module = module_functions(error);
+    const gtx_image_functions *module = module_to_read(path, NULL, 0, error);
     if (!module)
         return GTX_ERROR_UNSUPPORTED;
     const int failed = module->read_values(path, MAX_PIXELS, &image, message);
@@ -196,7 +215,7 @@ static gtx_result measure(const char *path, const void *data, size_t size, uint3
     const struct own *decoder = own_of(data, size);
     if (decoder)
         return decoder->measure(data, size, width, height, error);
-    const gtx_image_functions *module = module_functions(error);
+    const gtx_image_functions *module = module_to_read(path, data, size, error);
     if (!module)
         return GTX_ERROR_UNSUPPORTED;
     const int failed = module->measure(path, data, size, width, height, message);

@@ -1,7 +1,8 @@
-/* Images on disk. OpenImageIO behind it is a module, opened when the first image is asked for, so
- * that a program that needs none does not pay for it. The module, geotex-image.so, is looked for
- * from the folder of the library or program that holds this code, and nowhere else: in that folder,
- * in geotex/ below it and in ../lib/geotex/. No variable of the environment has a say in it. */
+/* Images on disk. What reads and writes them are modules, opened when something asks for them, so
+ * that a program that needs none does not pay: geotex-png-jpeg.so holds libpng and libjpeg, and
+ * geotex-image.so OpenImageIO, whose opening takes a quarter of a second. They are looked for from
+ * the folder of the library or program that holds this code, and nowhere else: in that folder, in
+ * geotex/ below it and in ../lib/geotex/. No variable of the environment has a say in it. */
 #ifndef GTX_IMAGE_IMAGE_H
 #define GTX_IMAGE_IMAGE_H
 

@@ -29,7 +29,8 @@ cook_own := -Wall -Wextra $(if $(filter 1,$(werror)),-Werror) -DGTX_BUILDING -DG
 cook_others := -w -DZSTD_DISABLE_ASM=1 -DDEBUGLEVEL=0 -DXXH_NAMESPACE=ZSTD_
 
 # What is not here, or is there but cannot do anything in a browser, stands in absent.cpp.
-cook_absent := %/module.cpp %/geotex_netcdf.c %/netcdf4.cpp lib/image/open.c lib/cook/driver.cpp
+cook_absent := %/module.cpp lib/image/png_jpeg/% %/geotex_netcdf.c %/netcdf4.cpp lib/image/open.c \
+               lib/cook/driver.cpp
 cook_sources := $(filter-out $(cook_absent),$(foreach r,image mesh grid chart bake measure cook, \
                   $(wildcard lib/$(r)/*.c* lib/$(r)/*/*.c*))) $(wildcard lib/web/cook/*.c*)
 cook_objects := $(patsubst %,$(cook_web)/%.o,$(basename $(cook_sources)))

@@ -162,9 +162,9 @@ run-paper-figures: $(MODEL)
 
 $(figures:%=$(out)/tests/bench/%): $(out)/tests/bench/%: $(out)/tests/bench/%.o \
     $(out)/tests/bench/figure.o \
-    $(bench_objects) $(call objects_of,host image) $(lib_cook) $(lib_core) | $(module)
+    $(bench_objects) $(call objects_of,host image) $(lib_cook) $(lib_core) | $(modules)
 	$(say) LINK $@
-	$(Q)ln -sf $(abspath $(module)) $(@D)
+	$(Q)ln -sf $(abspath $(modules)) $(@D)
 	$(Q)$(CXX) $(flags) -o $@ $^ $(call libs_of,asset mesh host image) -lmeshoptimizer
 
 $(out)/tests/bench/paper_tables: $(out)/tests/bench/paper_tables.o \
@@ -173,9 +173,9 @@ $(out)/tests/bench/paper_tables: $(out)/tests/bench/paper_tables.o \
 	$(Q)$(CXX) $(flags) -o $@ $^ $(call libs_of,asset mesh)
 
 $(out)/tests/bench/texels: $(out)/tests/bench/texels.o $(call objects_of,image) $(lib_cook) \
-    $(lib_core) | $(module)
+    $(lib_core) | $(modules)
 	$(say) LINK $@
-	$(Q)ln -sf $(abspath $(module)) $(@D)
+	$(Q)ln -sf $(abspath $(modules)) $(@D)
 	$(Q)$(CXX) $(flags) -o $@ $^ $(call libs_of,asset mesh image)
 
 $(out)/tests/bench/solids: $(out)/tests/bench/solids.o $(lib_cook) $(lib_core)

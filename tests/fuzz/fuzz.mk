@@ -12,10 +12,10 @@ clang := CC="$(CLANG)" CXX="$(CLANG)++"
 # The test of the corpora links what the fuzzer does, but for libFuzzer.
 fuzz_objects := $(patsubst %,$(out)/%.o,$(basename $(filter-out tests/fuzz/test_% \
                   tests/fuzz/libfuzzer.cpp,$(wildcard tests/fuzz/*.c tests/fuzz/*.cpp))))
-$(out)/tests/fuzz/test_fuzz: $(fuzz_objects) | $(module)
+$(out)/tests/fuzz/test_fuzz: $(fuzz_objects) | $(modules)
 
 $(out)/tests/fuzz/fuzz: $(fuzz_objects) $(out)/tests/fuzz/libfuzzer.o \
-    $(call objects_of,$(links_fuzz)) | $(module)
+    $(call objects_of,$(links_fuzz)) | $(modules)
 	$(say) LINK $@
 	$(Q)$(CXX) $(flags) -fsanitize=fuzzer -o $@ $^ $(call libs_of,$(links_fuzz))
 

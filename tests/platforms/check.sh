@@ -12,7 +12,7 @@ mirror='deb http://deb.debian.org/debian bookworm main'
 cmocka=http://deb.debian.org/debian/pool/main/c/cmocka/cmocka_1.1.7.orig.tar.xz
 packages=libc6-dev,libstdc++-12-dev,libopenmesh-dev,libdraco-dev,libtinygltf-dev,libeigen3-dev
 packages=$packages,nlohmann-json3-dev,libmeshoptimizer-dev,libzstd-dev,zlib1g-dev,libcmocka-dev
-packages=$packages,libopenimageio-dev,libegl-dev,libglfw3-dev
+packages=$packages,libopenimageio-dev,libpng-dev,libjpeg-dev,libegl-dev,libglfw3-dev
 core='base/test_exact base/test_error base/test_json base/test_limits asset/test_bad
     asset/test_codings asset/test_create asset/test_frames asset/test_patch asset/test_prefix
     derive/test_hierarchy derive/test_levels derive/test_proxies edit/test_edit
@@ -59,7 +59,8 @@ build_cmocka()
 }
 
 for platform in ${*:-gcc-11 clang-14 mingw i386 arm64 s390x}; do
-    programs="$core $cooker" modules=geotex-image.so more='' flags='' suffix='' run=''
+    programs="$core $cooker" modules='geotex-image.so geotex-png-jpeg.so'
+    more='' flags='' suffix='' run=''
     unset PKG_CONFIG_SYSROOT_DIR PKG_CONFIG_LIBDIR
     case $platform in
     gcc-11) needs=g++-11 CC=gcc-11 CXX=g++-11 ;;
@@ -98,7 +99,8 @@ for platform in ${*:-gcc-11 clang-14 mingw i386 arm64 s390x}; do
     # shellcheck disable=SC2086
     make --no-print-directory -j"$(nproc)" build="$folder/$platform" $options $more \
         flags_release=-O2 CC="$CC $flags" CXX="$CXX $flags" \
-        $(for p in $programs; do echo "$out/tests/$p"; done) ${modules:+"$out/$modules"} >&2
+        $(for p in $programs; do echo "$out/tests/$p"; done) \
+        $(for m in $modules; do echo "$out/$m"; done) >&2
     for program in $programs; do
         log=$folder/$platform/$(basename "$program").tap
         status=0
