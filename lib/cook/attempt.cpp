@@ -94,7 +94,7 @@ static Attempt finish(const Mesh &mesh, Partition partition, const Options &opti
     if (options.measure) {
         task.begin("measure");
         task.limits.work_again();
-        out.error = surface_error(out.asset.get(), charted, out.partition.junk, task);
+        out.error = surface_error({out.asset.get()}, charted, out.partition.junk, task);
     }
     if (options.error > 0)
         out.bytes = Encoded(out.asset.get(), options, task).size;

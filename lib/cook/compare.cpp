@@ -1,7 +1,7 @@
 /* An asset measured against its source model, behind the C API. */
+#include "cook/compare.hpp"
 #include "cook/guard.hpp"
 #include "cook/meta.hpp"
-#include "cook/models.hpp"
 #include "cook/report.hpp"
 
 #include "base/alloc.h"
@@ -116,22 +116,24 @@ static void require_source(const gtx_asset *asset, const Models &models)
                           "have changed since (--any-model compares with it)");
 }
 
-static void compare_files(const gtx_asset *asset, const char *asset_path, const char *model,
-                          const gtx_compare_desc &desc, gtx_compare_result *result,
-                          gtx_report *report)
+CompareTask::CompareTask(const gtx_compare_desc &desc)
+    : Task(desc.threads, desc.progress, desc.progress_user, {"import", "clean", "measure"},
+           {5, 10, 85}, desc.limits)
 {
-    Task task(desc.threads, desc.progress, desc.progress_user, {"import", "clean", "measure"},
-              {5, 10, 85}, desc.limits);
-    gtx_info info;
-    gtx_get_info(asset, &info);
     constexpr double VIEWS = 32, FIXED_VIEWS = 26; /* their work is that of as many cooks */
-    task.limits.allow_work(VIEWS * (1 + desc.random_views / FIXED_VIEWS));
-    task.limits.read(asset_path, info.file_size);
-    task.begin("import");
-    Models models = read_models({model}, desc.more, desc.more_count,
-                                {text_of(desc.texture_dir), text_of(desc.base_color)}, task);
-    if (!desc.any_model)
-        require_source(asset, models);
+    limits.allow_work(VIEWS * (1 + desc.random_views / FIXED_VIEWS));
+}
+
+Models read_compared(const char *model, const gtx_compare_desc &desc, Task &task)
+{
+    return read_models({model}, desc.more, desc.more_count,
+                       {text_of(desc.texture_dir), text_of(desc.base_color)}, task);
+}
+
+void compare_models(const ShownAt &shown, uint32_t levels, Models &models,
+                    const gtx_compare_desc &desc, Task &task, gtx_compare_result *result,
+                    gtx_report *report)
+{
     Mesh mesh = import_models(models, desc.z_up, task);
     CleanReport clean;
     task.begin("clean");
@@ -139,11 +141,11 @@ static void compare_files(const gtx_asset *asset, const char *asset_path, const 
 
     CompareOptions options;
     options.size = desc.size ? desc.size : 1024;
-    options.levels = desc.levels ? desc.levels : info.mip_count;
+    options.levels = desc.levels ? desc.levels : levels;
     options.random_views = desc.random_views;
     options.seed = desc.seed;
     task.begin("measure");
-    CompareReport measured = compare(asset, mesh, options, task);
+    CompareReport measured = compare(shown, mesh, options, task);
     task.end();
 
     if (report) {
@@ -156,6 +158,22 @@ static void compare_files(const gtx_asset *asset, const char *asset_path, const 
                    measured.silhouette_iou, measured.silhouette_iou_min,
                    measured.error.forward.rms, measured.error.reverse.max,
                    measured.seams.p99_steps, measured.seams.max_steps};
+}
+
+static void compare_files(const gtx_asset *asset, const char *asset_path, const char *model,
+                          const gtx_compare_desc &desc, gtx_compare_result *result,
+                          gtx_report *report)
+{
+    CompareTask task(desc);
+    gtx_info info;
+    gtx_get_info(asset, &info);
+    task.limits.read(asset_path, info.file_size);
+    task.begin("import");
+    Models models = read_compared(model, desc, task);
+    if (!desc.any_model)
+        require_source(asset, models);
+    compare_models([asset](double) { return Assets{asset}; }, info.mip_count, models, desc, task,
+                   result, report);
 }
 
 } // namespace gtx

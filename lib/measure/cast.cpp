@@ -1,4 +1,4 @@
-/* Renders an asset with the ray query. */
+/* Renders assets with the ray query. */
 #include "measure/cast.hpp"
 
 #include "asset/asset.h"
@@ -10,76 +10,163 @@ namespace gtx {
 /* Steps of height within which a crossing from below is the edge of an overlap, not a leak. */
 static const double LEAK_STEPS = 4;
 
-AssetView::AssetView(const gtx_asset *asset, uint32_t level, double max_error)
-    : patches_(gtx_patches(asset)),
-      color_(static_cast<const uint8_t *>(gtx_map_data(asset, GTX_MAP_COLOR, 0, nullptr)))
+static Vec3d anchor_of(const gtx_info &info)
 {
-    gtx_get_info(asset, &info_);
-    gtx_caster_desc desc = {};
-    desc.allocator = &asset->allocator;
-    desc.level = level;
-    desc.max_error = float(max_error);
-    desc.limits.memory = desc.limits.cells = UINT64_MAX; /* the allocator counts; cells take time */
-    gtx_caster *caster = nullptr;
-    gtx_error error;
-    require_ok(gtx_caster_create(asset, &desc, &caster, &error), error);
-    caster_.reset(caster);
+    return {info.anchor[0], info.anchor[1], info.anchor[2]};
 }
 
-double AssetView::height_step(uint32_t patch) const
+/* The box of all patches' boxes. */
+static void bound(const gtx_patch *patches, const gtx_info &info, Vec3d &low, Vec3d &high)
 {
-    return gtx_height_step(&patches_[patch], info_.height_bits);
+    low = Vec3d(INFINITY, INFINITY, INFINITY);
+    high = -low;
+    const Vec3d anchor = anchor_of(info);
+    for (uint32_t i = 0; i < info.patch_count; ++i) {
+        const gtx_patch_frame frame = gtx_patch_frame_of(&patches[i], info.height_bits);
+        const double steps[3] = {patches[i].rect[2] - 1., patches[i].rect[3] - 1.,
+                                 gtx_height_steps(info.height_bits) + 1};
+        for (int corner = 0; corner < 8; ++corner)
+            for (int k = 0; k < 3; ++k) {
+                double at = frame.origin[k] + anchor[k];
+                for (int a = 0; a < 3; ++a)
+                    at += corner >> a & 1 ? steps[a] * frame.axis[a][k] : 0;
+                low[k] = std::min(low[k], at);
+                high[k] = std::max(high[k], at);
+            }
+    }
 }
 
-void AssetView::cast_row(const View &view, uint32_t j, Vector<gtx_hit> &hits,
+AssetView::AssetView(const Vector<const gtx_asset *> &assets, uint32_t level, double max_error)
+{
+    for (const gtx_asset *asset : assets) {
+        Part part = {};
+        gtx_get_info(asset, &part.info);
+        part.patches = gtx_patches(asset);
+        part.color =
+            static_cast<const uint8_t *>(gtx_map_data(asset, GTX_MAP_COLOR, 0, nullptr));
+        bound(part.patches, part.info, part.low, part.high);
+        gtx_caster_desc desc = {};
+        desc.allocator = &asset->allocator;
+        desc.level = level;
+        desc.max_error = float(max_error);
+        /* the allocator counts; cells take time */
+        desc.limits.memory = desc.limits.cells = UINT64_MAX;
+        gtx_caster *caster = nullptr;
+        gtx_error error;
+        require_ok(gtx_caster_create(asset, &desc, &caster, &error), error);
+        part.caster.reset(caster);
+        parts_.push_back(std::move(part));
+    }
+}
+
+double AssetView::height_step(const ViewHit &hit) const
+{
+    return gtx_height_step(&patch_of(hit), parts_[hit.asset].info.height_bits);
+}
+
+namespace {
+
+/* The pixels that a box may be seen at, a margin for rounding included. */
+struct Window {
+    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+
+    Window(const View &view, const Vec3d &from, const Vec3d &to)
+    {
+        for (int corner = 0; corner < 8; ++corner) {
+            const Vec3d at = view.project({corner & 1 ? to.x : from.x, corner & 2 ? to.y : from.y,
+                                           corner & 4 ? to.z : from.z});
+            for (int k = 0; k < 2; ++k) {
+                low[k] = std::min(low[k], at[k] - 2);
+                high[k] = std::max(high[k], at[k] + 2);
+            }
+        }
+    }
+    bool holds(int axis, uint32_t pixel) const
+    {
+        return pixel + 0.5 >= low[axis] && pixel + 0.5 <= high[axis];
+    }
+};
+
+} // namespace
+
+/* The nearest hit of all assets at some pixels of a row. */
+void AssetView::cast_nearest(const View &view, uint32_t j, const Vector<uint32_t> &pixels,
+                             uint32_t flags, Vector<ViewHit> &hits) const
+{
+    Vector<gtx_ray> rays;
+    Vector<gtx_hit> found;
+    Vector<uint32_t> cast; /* places in `pixels` */
+    ViewHit none = {};
+    none.t = INFINITY;
+    none.patch = NO_HIT;
+    hits.assign(pixels.size(), none);
+    for (uint32_t n = 0; n < parts_.size(); ++n) {
+        const Part &part = parts_[n];
+        const Window window(view, part.low, part.high);
+        if (!window.holds(1, j))
+            continue;
+        const Vec3d anchor = anchor_of(part.info);
+        rays.clear();
+        cast.clear();
+        for (uint32_t k = 0; k < pixels.size(); ++k) {
+            if (!window.holds(0, pixels[k]))
+                continue;
+            const Vec3d from = view.at(pixels[k], j) - anchor;
+            rays.push_back({{float(from.x), float(from.y), float(from.z)}, 0,
+                            {float(-view.toward.x), float(-view.toward.y), float(-view.toward.z)},
+                            0});
+            cast.push_back(k);
+        }
+        found.resize(rays.size());
+        gtx_raycast(part.caster.get(), rays.data(), found.data(), rays.size(), flags);
+        for (size_t k = 0; k < cast.size(); ++k)
+            if (found[k].t < hits[cast[k]].t)
+                hits[cast[k]] = {found[k], n};
+    }
+}
+
+void AssetView::cast_row(const View &view, uint32_t j, Vector<ViewHit> &hits,
                          Vector<Crossing> &crossings) const
 {
-    Vector<gtx_ray> rays(view.size), again;
-    Vector<uint32_t> pixel;
-    const Vec3d anchor(info_.anchor[0], info_.anchor[1], info_.anchor[2]);
-    for (uint32_t i = 0; i < view.size; ++i) {
-        Vec3d origin = view.at(i, j) - anchor;
-        rays[i] = gtx_ray{{float(origin.x), float(origin.y), float(origin.z)}, 0,
-                          {float(-view.toward.x), float(-view.toward.y), float(-view.toward.z)}, 0};
-    }
-    hits.resize(view.size);
+    Vector<uint32_t> pixels(view.size), again;
+    for (uint32_t i = 0; i < view.size; ++i)
+        pixels[i] = i;
     crossings.assign(view.size, Crossing::none);
-    gtx_raycast(caster_.get(), rays.data(), hits.data(), rays.size(), GTX_RAY_TWO_SIDED);
+    cast_nearest(view, j, pixels, GTX_RAY_TWO_SIDED, hits);
     for (uint32_t i = 0; i < view.size; ++i) {
         if (hits[i].patch == NO_HIT)
             continue;
         crossings[i] = Crossing::shown;
-        if (hits[i].back && !(patches_[hits[i].patch].flags & GTX_PATCH_TWO_SIDED)) {
-            again.push_back(rays[i]);
-            pixel.push_back(i);
-        }
+        if (hits[i].back && !(patch_of(hits[i]).flags & GTX_PATCH_TWO_SIDED))
+            again.push_back(i);
     }
     /* Where the nearest crossing is not shown, what is shown lies behind it. */
-    Vector<gtx_hit> shown(again.size());
-    gtx_raycast(caster_.get(), again.data(), shown.data(), again.size(), 0);
+    Vector<ViewHit> shown;
+    cast_nearest(view, j, again, 0, shown);
     for (size_t k = 0; k < again.size(); ++k) {
-        gtx_hit &hit = hits[pixel[k]];
-        if (!(shown[k].t - hit.t <= LEAK_STEPS * height_step(hit.patch)))
-            crossings[pixel[k]] = Crossing::leak;
+        ViewHit &hit = hits[again[k]];
+        if (!(shown[k].t - hit.t <= LEAK_STEPS * height_step(hit)))
+            crossings[again[k]] = Crossing::leak;
         hit = shown[k];
     }
 }
 
-Fragment AssetView::fragment(const gtx_hit &hit) const
+Fragment AssetView::fragment(const ViewHit &hit) const
 {
+    const Part &part = parts_[hit.asset];
     double side = hit.back ? -1 : 1;
     Fragment fragment = {Vec3d(hit.normal[0], hit.normal[1], hit.normal[2]) * side,
                          {255, 255, 255}};
-    if (!color_)
+    if (!part.color)
         return fragment;
-    const gtx_patch &patch = patches_[hit.patch];
+    const gtx_patch &patch = patch_of(hit);
     uint32_t i = std::min(uint32_t(hit.x), patch.rect[2] - 2u);
     uint32_t j = std::min(uint32_t(hit.y), patch.rect[3] - 2u);
     double u = hit.x - i, v = hit.y - j;
     const double weight[4] = {(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v};
-    size_t row = size_t(patch.page) * info_.page_height + patch.rect[1] + j;
-    const uint8_t *texel = color_ + 4 * (row * info_.page_width + patch.rect[0] + i);
-    const uint8_t *next = texel + 4 * size_t(info_.page_width);
+    size_t row = size_t(patch.page) * part.info.page_height + patch.rect[1] + j;
+    const uint8_t *texel = part.color + 4 * (row * part.info.page_width + patch.rect[0] + i);
+    const uint8_t *next = texel + 4 * size_t(part.info.page_width);
     for (int a = 0; a < 3; ++a)
         fragment.color[a] = weight[0] * texel[a] + weight[1] * texel[4 + a] + weight[2] * next[a] +
                             weight[3] * next[4 + a];

@@ -1,4 +1,4 @@
-/* An asset as seen in a view, row by row. */
+/* Assets as seen in a view, row by row. */
 #pragma once
 
 #include "measure/view.hpp"
@@ -16,31 +16,51 @@ enum class Crossing : uint8_t {
     leak                         /* from below, with no height field seen right behind it */
 };
 
-/* An asset at one level of detail, or where `max_error` (object units) is given each patch at its
- * coarsest within it, to be looked at. Const and reentrant. */
+/* What is shown, and which of the assets shows it. */
+struct ViewHit : gtx_hit {
+    uint32_t asset = 0;
+};
+
+/* Assets at one level of detail, or where `max_error` (object units) is given each patch at its
+ * coarsest within it, to be looked at together: each at its anchor, the nearest is shown. Const and
+ * reentrant. */
 class AssetView {
 public:
-    /* The caster takes its memory where the asset did. Throws Error: MEMORY. */
-    AssetView(const gtx_asset *asset, uint32_t level, double max_error = 0);
+    /* Casters take their memory where the assets did. Throws Error: MEMORY. */
+    AssetView(const Vector<const gtx_asset *> &assets, uint32_t level, double max_error = 0);
+    AssetView(const gtx_asset *asset, uint32_t level, double max_error = 0)
+        : AssetView(Vector<const gtx_asset *>{asset}, level, max_error)
+    {
+    }
 
     /* Casts row j of the view; both vectors get view.size entries. A hit is what is shown: hit.t is
      * the depth, infinity where there is none. */
-    void cast_row(const View &view, uint32_t j, Vector<gtx_hit> &hits,
+    void cast_row(const View &view, uint32_t j, Vector<ViewHit> &hits,
                   Vector<Crossing> &crossings) const;
 
-    /* The length of one step of the patch's height codes. */
-    double height_step(uint32_t patch) const;
+    /* The length of one step of the height codes of the patch that was hit. */
+    double height_step(const ViewHit &hit) const;
     /* Normal and colour at a hit. */
-    Fragment fragment(const gtx_hit &hit) const;
+    Fragment fragment(const ViewHit &hit) const;
 
 private:
     struct Destroy {
         void operator()(gtx_caster *caster) const { gtx_caster_destroy(caster); }
     };
-    gtx_info info_;
-    const gtx_patch *patches_;
-    const uint8_t *color_;       /* level 0, or null */
-    std::unique_ptr<gtx_caster, Destroy> caster_;
+    struct Part {
+        gtx_info info;
+        const gtx_patch *patches;
+        const uint8_t *color;        /* level 0, or null */
+        Vec3d low, high;             /* around all patches, anchor included */
+        std::unique_ptr<gtx_caster, Destroy> caster;
+    };
+    void cast_nearest(const View &view, uint32_t j, const Vector<uint32_t> &pixels, uint32_t flags,
+                      Vector<ViewHit> &hits) const;
+    const gtx_patch &patch_of(const ViewHit &hit) const
+    {
+        return parts_[hit.asset].patches[hit.patch];
+    }
+    Vector<Part> parts_;
 };
 
 } // namespace gtx

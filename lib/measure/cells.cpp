@@ -1,4 +1,4 @@
-/* The cells of an asset as shapes for nearest-point queries. */
+/* The cells of assets as shapes for nearest-point queries. */
 #include "measure/cells.hpp"
 
 #include "asset/asset.h"
@@ -16,22 +16,26 @@ template <class T> static double mix(const T corner[4], double u, double v)
     return near * (1 - v) + far * v;
 }
 
-Cells::Cells(const gtx_asset *asset)
+Cells::Cells(const Vector<const gtx_asset *> &assets)
 {
-    for (uint32_t i = 0; i < asset->info.patch_count; ++i)
-        add_patch(asset, i);
+    for (const gtx_asset *asset : assets) {
+        const Vec3d offset = vector(asset->info.anchor) - vector(assets[0]->info.anchor);
+        for (uint32_t i = 0; i < asset->info.patch_count; ++i)
+            add_patch(asset, i, offset);
+    }
 }
 
-void Cells::add_patch(const gtx_asset *asset, uint32_t index)
+void Cells::add_patch(const gtx_asset *asset, uint32_t index, const Vec3d &offset)
 {
+    const uint32_t number = uint32_t(frames_.size());
     const gtx_patch &patch = asset->patches[index];
     const gtx_patch_frame frame = gtx_patch_frame_of(&patch, asset->info.height_bits);
     const double(&axis)[3][3] = frame.axis;
-    frames_.push_back({vector(frame.origin), vector(axis[0]), vector(axis[1]), vector(axis[2])});
+    frames_.push_back({vector(frame.origin) + offset, vector(axis[0]), vector(axis[1]), vector(axis[2])});
     for (uint32_t y = 0; y + 1 < patch.rect[3]; ++y) {
         cancel_point(8 * patch.rect[2]);
         for (uint32_t x = 0; x + 1 < patch.rect[2]; ++x) {
-            Cell cell = {index, uint16_t(x), uint16_t(y), {}, {}, false};
+            Cell cell = {number, uint16_t(x), uint16_t(y), {}, {}, false};
             bool solid = true, shown = false;
             for (uint32_t k = 0; k < 4; ++k) {
                 cell.code[k] = uint16_t(gtx_height_code(asset, &patch, x + (k & 1), y + (k >> 1)));

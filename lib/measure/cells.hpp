@@ -1,4 +1,4 @@
-/* The surface of an asset as small shapes: its cells, trimmed. */
+/* The surface of assets as small shapes: their cells, trimmed. */
 #pragma once
 
 #include "mesh/nearest.hpp"
@@ -7,13 +7,13 @@
 
 namespace gtx {
 
-/* Shapes for NearestTree, relative to the asset's anchor. An untrimmed cell is the four
+/* Shapes for NearestTree, relative to the first asset's anchor. An untrimmed cell is the four
  * triangles around its centre, which lie within a sixteenth of its twist of the bilinear patch. A
  * cell that the outline crosses is cut into 2x2, and the eight triangles of those are clipped where
  * the trim, linear along their sides, passes the limit. */
 class Cells {
 public:
-    explicit Cells(const gtx_asset *asset);
+    explicit Cells(const Vector<const gtx_asset *> &assets);
 
     size_t size() const { return cells_.size(); }
     size_t looks(size_t i) const { return cells_[i].crossed ? 12 : 4; }
@@ -25,7 +25,7 @@ public:
     /* The point at (u, v) in 0..1 of cell i, and its trim in texels. */
     Vec3d point(size_t i, double u, double v) const;
     double trim(size_t i, double u, double v) const;
-    /* The patch of cell i; a patch's height step and the longer side of its texels, object
+    /* The patch of cell i, of all assets' numbered on; a patch's height step and the longer side of its texels, object
      * units. */
     uint32_t patch(size_t i) const { return cells_[i].patch; }
     double height_step(uint32_t patch) const { return length(frames_[patch].z); }
@@ -48,7 +48,7 @@ private:
     };
     Vec3d corner(size_t i, int k) const;
     double crossed_distance2(size_t i, const Vec3d &p, double bound) const;
-    void add_patch(const gtx_asset *asset, uint32_t index);
+    void add_patch(const gtx_asset *asset, uint32_t index, const Vec3d &offset);
 
     Vector<Frame> frames_;
     Vector<Cell> cells_;

@@ -1,4 +1,4 @@
-/* Holes, walls, leaks, silhouettes, depth and shading of an asset against its source. */
+/* Holes, walls, leaks, silhouettes, depth and shading of assets against their source. */
 #include "measure/distribution.hpp"
 #include "measure/figures.hpp"
 
@@ -65,7 +65,7 @@ static double add_up(const Vector<Figures> &figures, Report &sum, uint64_t &surf
 }
 
 /* Every level at the size asked for, then what the runtime would draw, at ever smaller sizes. */
-static Vector<Scene> make_scenes(const gtx_asset *asset, const Extent &extent,
+static Vector<Scene> make_scenes(const ShownAt &shown, const Extent &extent,
                                  const CompareOptions &options)
 {
     Vector<Scene> scenes;
@@ -73,13 +73,15 @@ static Vector<Scene> make_scenes(const gtx_asset *asset, const Extent &extent,
         return comparison_views(extent, size, options.random_views, options.seed);
     };
     Vector<View> views = views_of(options.size);
+    const Assets finest = shown(0);
     for (uint32_t level = 0; level < options.levels; ++level)
-        scenes.push_back({views, AssetView(asset, level), level, level == 0,
+        scenes.push_back({views, AssetView(finest, level), level, level == 0,
                           options.faults != nullptr});
     const uint32_t sizes = options.details ? DETAIL_SIZES : 0;
     for (uint32_t k = 0; k < sizes && options.size >> k >= MIN_SIZE; ++k) {
         views = views_of(options.size >> k);
-        scenes.push_back({views, AssetView(asset, 0, DETAIL_PIXELS * views[0].pixel),
+        const double pixel = views[0].pixel;
+        scenes.push_back({views, AssetView(shown(pixel), 0, DETAIL_PIXELS * pixel),
                           CHOSEN_LEVELS, false, options.faults != nullptr});
     }
     return scenes;
@@ -115,10 +117,16 @@ static void report_scene(const Scene &scene, const Vector<Figures> &figures, boo
 CompareReport compare(const gtx_asset *asset, const Mesh &mesh, const CompareOptions &options,
                       Task &task)
 {
+    return compare([asset](double) { return Assets{asset}; }, mesh, options, task);
+}
+
+CompareReport compare(const ShownAt &shown, const Mesh &mesh, const CompareOptions &options,
+                      Task &task)
+{
     const Comparison all = {mesh, extent_of(mesh)};
     if (!(all.extent.radius > 0))
         throw Error(GTX_ERROR_EMPTY, "the source has no extent to measure against");
-    const Vector<Scene> scenes = make_scenes(asset, all.extent, options);
+    const Vector<Scene> scenes = make_scenes(shown, all.extent, options);
     const size_t views = scenes[0].views.size();
     Vector<Vector<Figures>> figures(scenes.size(), Vector<Figures>(views));
     Distribution depths, angles;
@@ -148,8 +156,8 @@ CompareReport compare(const gtx_asset *asset, const Mesh &mesh, const CompareOpt
         report_scene(scenes[s], figures[s], s < options.levels, depths, angles, report);
     }
     if (options.surface) {
-        report.error = surface_error(asset, mesh, {}, task);
-        report.seams = measure_seams(asset, mesh, task);
+        report.error = surface_error(shown(0), mesh, {}, task);
+        report.seams = measure_seams(shown(0), mesh, task);
     }
     return report;
 }

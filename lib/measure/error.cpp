@@ -1,4 +1,4 @@
-/* Distances between source and asset: points sampled on one, nearest points sought on the other. */
+/* Distances between source and assets: points sampled on one, nearest points sought on the other. */
 #include "measure/cells.hpp"
 #include "measure/measure.hpp"
 #include "measure/sample.hpp"
@@ -16,7 +16,7 @@ static const size_t MAX_LOOKS = 192;
 
 namespace {
 
-/* Shapes for NearestTree. Everything here is relative to the asset's anchor: boxes are floats. */
+/* Shapes for NearestTree. Everything here is relative to the first asset's anchor: boxes are floats. */
 struct MeshTriangles {
     const Mesh &mesh;
     Vec3d anchor;
@@ -129,14 +129,14 @@ static Deviation deviation(const Vector<Vec3d> &points, const Shapes &shapes, do
     return result;
 }
 
-SurfaceError surface_error(const gtx_asset *asset, const Mesh &mesh,
+SurfaceError surface_error(const Assets &assets, const Mesh &mesh,
                            const Vector<uint8_t> &junk, Task &task)
 {
     const double diagonal = extent_of(mesh).diagonal;
     gtx_info info;
-    gtx_get_info(asset, &info);
+    gtx_get_info(assets[0], &info);
     const MeshTriangles source = {mesh, Vec3d(info.anchor[0], info.anchor[1], info.anchor[2])};
-    const Cells cells(asset);
+    const Cells cells(assets);
     SurfaceError error;
     error.forward = deviation(sample_mesh(source, junk), cells, diagonal, task, 0, 0.5);
     error.reverse = deviation(sample_cells(cells), source, diagonal, task, 0.5, 1);

@@ -22,7 +22,7 @@ struct Around {
  * it may. */
 struct Suspect {
     uint32_t i, j;
-    gtx_hit hit;
+    ViewHit hit;
     bool wall;
     double off;                  /* from the nearest or the deepest of the nine */
     double tolerance;
@@ -39,10 +39,10 @@ struct Look {
     Figures &out;
     Vector<Suspect> suspects = {};
 
-    void pixel(uint32_t i, uint32_t j, const gtx_hit &hit);
+    void pixel(uint32_t i, uint32_t j, const ViewHit &hit);
     void faults();
     void fault(const Suspect &suspect);
-    void appearance(uint32_t i, uint32_t j, const gtx_hit &hit, bool depths_agree);
+    void appearance(uint32_t i, uint32_t j, const ViewHit &hit, bool depths_agree);
     void leaks(const Vector<Crossing> &crossings);
 };
 
@@ -96,7 +96,8 @@ void Look::fault(const Suspect &s)
     const size_t at = size_t(s.j) * view.size + s.i;
     const double depth = s.wall ? double(s.hit.t) : image.depth[at];
     out.faults.push_back({s.wall, scene.level, view.size, view_index, s.i, s.j, image.triangle[at],
-                          s.hit.patch, s.off, view.at(s.i, s.j) - view.toward * depth});
+                          s.hit.patch, s.hit.asset, s.off,
+                          view.at(s.i, s.j) - view.toward * depth});
 }
 
 /* Whether the source, too, shows something as deep: past an outline that runs between the centres
@@ -134,7 +135,7 @@ void Look::faults()
     }
 }
 
-void Look::appearance(uint32_t i, uint32_t j, const gtx_hit &hit, bool depths_agree)
+void Look::appearance(uint32_t i, uint32_t j, const ViewHit &hit, bool depths_agree)
 {
     bool in_source = image.triangle[size_t(j) * view.size + i] != NO_HIT;
     bool in_asset = hit.patch != NO_HIT;
@@ -149,7 +150,7 @@ void Look::appearance(uint32_t i, uint32_t j, const gtx_hit &hit, bool depths_ag
         out.angle.push_back(float(degrees_between(source.normal, seen.normal)));
 }
 
-void Look::pixel(uint32_t i, uint32_t j, const gtx_hit &hit)
+void Look::pixel(uint32_t i, uint32_t j, const ViewHit &hit)
 {
     const size_t at = size_t(j) * view.size + i;
     const bool in_source = image.triangle[at] != NO_HIT, in_asset = hit.patch != NO_HIT;
@@ -161,7 +162,7 @@ void Look::pixel(uint32_t i, uint32_t j, const gtx_hit &hit)
     const double diagonal = all.extent.diagonal;
     double tolerance = std::max(HOLE_PIXELS * view.pixel, HOLE_DIAGONAL * diagonal);
     if (in_asset)
-        tolerance = std::max(tolerance, HOLE_STEPS * asset.height_step(hit.patch));
+        tolerance = std::max(tolerance, HOLE_STEPS * asset.height_step(hit));
     const double error = double(hit.t) - image.depth[at]; /* meaningless unless in both */
     const Around around = look_around(image, view.size, i, j);
     if (around.surface) {
@@ -200,7 +201,7 @@ void measure_view(const Comparison &all, const Scene &scene, uint32_t view_index
 {
     const View &view = scene.views[view_index];
     Look look = {all, scene, view_index, view, image, scene.asset, out};
-    Vector<gtx_hit> hits;
+    Vector<ViewHit> hits;
     Vector<Crossing> row, crossings;
     crossings.reserve(size_t(view.size) * view.size);
     for (uint32_t j = 0; j < view.size; ++j) {

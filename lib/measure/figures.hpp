@@ -1,4 +1,4 @@
-/* The figures of one view of an asset and its source, pixel by pixel. */
+/* The figures of one view of assets and their source, pixel by pixel. */
 #pragma once
 
 #include "measure/cast.hpp"
@@ -16,7 +16,7 @@ struct Figures {
     Vector<PixelFault> faults;
 };
 
-/* Views of one size, and the asset as it is looked at there. */
+/* Views of one size, and the assets as they are looked at there. */
 struct Scene {
     Vector<View> views;
     AssetView asset;

@@ -1,15 +1,21 @@
-/* Measures of an asset against its source mesh, as format/measures.md defines them. */
+/* Measures of an asset, or of several shown together, against the source mesh, as
+ * format/measures.md defines them. */
 #pragma once
 
 #include "mesh/mesh.hpp"
 
 #include <geotex/geotex.h>
 
+#include <functional>
+
 namespace gtx {
 
 struct Deviation {
     double rms = 0, max = 0;     /* fractions of the source's bounding diagonal */
 };
+
+/* Assets that are shown together, each at its anchor; at least one. */
+using Assets = Vector<const gtx_asset *>;
 
 /* Forward: 2^18 area-stratified points of the source to the nearest point of the trimmed asset.
  * Reverse: as many points of all that is drawn, past outlines too, to the nearest point of the
@@ -19,10 +25,10 @@ struct Deviation {
 struct SurfaceError {
     Deviation forward, reverse;
 };
-SurfaceError surface_error(const gtx_asset *asset, const Mesh &mesh,
+SurfaceError surface_error(const Assets &assets, const Mesh &mesh,
                            const Vector<uint8_t> &junk, Task &task);
 
-/* Where patches meet: 100,000 points of the outlines of their cores (trim 0), each to the nearest
+/* Where patches meet, of one asset or of two: 100,000 points of the outlines of their cores (trim 0), each to the nearest
  * point of the other patches, in height steps of the coarser of the two. Points within two
  * texels of where the source ends have no other patch to meet. */
 struct SeamReport {
@@ -30,7 +36,7 @@ struct SeamReport {
     double p99_steps = 0, max_steps = 0;
     double max = 0;              /* fraction of the source's bounding diagonal */
 };
-SeamReport measure_seams(const gtx_asset *asset, const Mesh &mesh, Task &task);
+SeamReport measure_seams(const Assets &assets, const Mesh &mesh, Task &task);
 
 /* How many pixels a level of detail gets wrong. */
 struct LevelReport {
@@ -70,6 +76,7 @@ struct PixelFault {
     uint32_t size, view, x, y;   /* pixels along a side of the view, which view, and where */
     uint32_t triangle;           /* of the mesh, seen there; UINT32_MAX: none */
     uint32_t patch;              /* that was hit; UINT32_MAX: none */
+    uint32_t asset;              /* whose patch that is */
     double depth;                /* by how much too deep, or too near; infinity: alone */
     Vec3d position;              /* of the source's surface, or a wall's, object space */
 };
@@ -86,6 +93,12 @@ struct CompareOptions {
 };
 
 CompareReport compare(const gtx_asset *asset, const Mesh &mesh, const CompareOptions &options,
+                      Task &task);
+
+/* The assets to show where so many object units make up a pixel; 0: for the levels, the distances
+ * and the seams. They live as long as the comparison. */
+using ShownAt = std::function<Assets(double pixel)>;
+CompareReport compare(const ShownAt &shown, const Mesh &mesh, const CompareOptions &options,
                       Task &task);
 
 } // namespace gtx

@@ -98,12 +98,12 @@ static Vector<SeamPoint> sample_outlines(const Cells &cells)
     return points;
 }
 
-SeamReport measure_seams(const gtx_asset *asset, const Mesh &mesh, Task &task)
+SeamReport measure_seams(const Assets &assets, const Mesh &mesh, Task &task)
 {
     gtx_info info;
-    gtx_get_info(asset, &info);
+    gtx_get_info(assets[0], &info);
     const Vec3d anchor(info.anchor[0], info.anchor[1], info.anchor[2]);
-    const Cells cells(asset);
+    const Cells cells(assets);
     const BorderEdges border(mesh, anchor);
     const NearestTree<Cells> fields(cells, task, 0);
     const NearestTree<BorderEdges> ends(border, task, 0);

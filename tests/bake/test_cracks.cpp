@@ -233,7 +233,7 @@ static void check_seams(const Mesh &mesh, int charts, double within)
     Partition partition = shapes::split(mesh, scattered(mesh, charts), 64);
     Task task(2, nullptr, nullptr, {"bake", "pack"});
     gtx_asset *asset = asset_of(bake(mesh, partition, {}, task));
-    const SeamReport seams = measure_seams(asset, mesh, task);
+    const SeamReport seams = measure_seams({asset}, mesh, task);
     print_message("# %zu of %zu points within two steps\n", size_t(seams.within_two_steps),
                   size_t(seams.points));
     assert_true(seams.points > 90000);

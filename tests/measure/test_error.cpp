@@ -32,7 +32,7 @@ static SurfaceError error_of(const gtx_asset *asset, const Mesh &mesh,
                              const Vector<uint8_t> &junk = {})
 {
     Task task(2, nullptr, nullptr);
-    return surface_error(asset, mesh, junk, task);
+    return surface_error({asset}, mesh, junk, task);
 }
 
 static void triangle_distance_is_the_least(void **)
@@ -147,7 +147,7 @@ static void trim_is_honoured(void **)
     const double corner[3] = {0, 0, 0};
     fixture_patch patch = {fixture_frame(corner, 16, 16, 1, 1), half_field, nullptr};
     gtx_asset *asset = fixture_build(&patch, 1, 8, 1);
-    Cells cells(asset);
+    Cells cells({asset});
     Task task(0, nullptr, nullptr);
     NearestTree<Cells> tree(cells, task, 0);
     uint32_t near = NO_HIT;
@@ -215,14 +215,14 @@ static void a_step_between_patches_is_seen(void **)
                                    {fixture_frame(raised, 16, 16, 1, 1), other_half, nullptr}};
         gtx_asset *asset = fixture_build(patches, 2, 8, 1);
         Task task(2, nullptr, nullptr);
-        SeamReport seams = measure_seams(asset, plane_mesh(40, 40, 0.5, 5), task);
+        SeamReport seams = measure_seams({asset}, plane_mesh(40, 40, 0.5, 5), task);
         assert_int_equal(seams.points, 100000);
         assert_int_equal(seams.within_two_steps, step > 0 ? 0 : 100000);
         assert_float_equal(seams.p99_steps, step * 254, 1e-3);
         assert_float_equal(seams.max_steps, step * 254, 1e-3);
         assert_float_equal(seams.max, step / std::hypot(40, 40), 1e-6);
         /* Where the source ends, no neighbour is missed. */
-        seams = measure_seams(asset, plane_mesh(17.5, 40, 0.5, 5), task);
+        seams = measure_seams({asset}, plane_mesh(17.5, 40, 0.5, 5), task);
         assert_int_equal(seams.points, 0);
         gtx_close(asset);
     }

@@ -110,10 +110,10 @@ static void what_is_cut_away_is_not_missed(void **)
     for (Vec3d &p : mesh.positions)
         p = {p.x / 3.875 * 15, p.y / 2.875 * 15, 0.5};
     Task task(2, nullptr, nullptr);
-    assert_float_equal(surface_error(asset, mesh, {}, task).forward.max, 0, 1e-7);
+    assert_float_equal(surface_error({asset}, mesh, {}, task).forward.max, 0, 1e-7);
     mesh.appearance.materials[0].alpha_cutoff = -1;
     double farthest = (15 - 7.8) / std::hypot(15, 15);
-    assert_float_equal(surface_error(asset, mesh, {}, task).forward.max, farthest, 1e-3);
+    assert_float_equal(surface_error({asset}, mesh, {}, task).forward.max, farthest, 1e-3);
     gtx_close(asset);
 }
 

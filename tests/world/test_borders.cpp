@@ -63,7 +63,7 @@ Vector<const Tile *> cut_of(const Plan &plan, const Cut &cut)
 Vector<float> cast_all(const Scene &scene, const Vector<const Tile *> &tiles, const View &view)
 {
     Vector<float> depth(size_t(view.size) * view.size, INFINITY);
-    Vector<gtx_hit> hits;
+    Vector<ViewHit> hits;
     Vector<Crossing> crossings;
     for (const Tile *tile : tiles)
         for (uint32_t j = 0; j < view.size; ++j) {

@@ -88,7 +88,7 @@ static Colors measured(const Plan &plan, bool leaves)
         assert_int_equal(gtx_open_file(asset_path(plan, tile).c_str(), nullptr, &asset, &error), 0);
         {
             const AssetView of(asset, 0);
-            Vector<gtx_hit> hits;
+            Vector<ViewHit> hits;
             Vector<Crossing> crossings;
             for (uint32_t j = 0; j < view.size; ++j) {
                 of.cast_row(view, j, hits, crossings);

@@ -172,7 +172,7 @@ static void normals_and_colors_go_on_across_borders(void **)
         assert_int_equal(gtx_open_file(asset_path(plan, tile).c_str(), nullptr, &asset, &error), 0);
         {
             const AssetView shown(asset, 0);
-            Vector<gtx_hit> hits;
+            Vector<ViewHit> hits;
             Vector<Crossing> crossings;
             for (uint32_t j = 0; j < view.size; ++j) {
                 shown.cast_row(view, j, hits, crossings);

@@ -1,27 +1,31 @@
-/* gtx compare: an asset against its source mesh. */
-#include "cli/cli.h"
+/* gtx compare: an asset, or a world, against its source mesh. */
+#include "cli/guard.hpp"
+#include "cli/view/world.hpp"
+#include "world/compare.hpp"
 
 #include <geotex/cook.h>
 
-#include <inttypes.h>
-#include <string.h>
+#include <cinttypes>
 
 enum { MAX_FILES = 4097 };
 
 static gtx_compare_desc desc;
 static bool as_json, any_model;
-static double max_holes = -1, max_walls = -1, min_iou = -1, max_rms = -1;
+static double tile_error, max_holes = -1, max_walls = -1, min_iou = -1, max_rms = -1;
 
 static const option options[] = {
-    {"json", 0, OPTION_FLAG, &as_json, NULL, "print the whole report as JSON", 0, 0},
+    {"json", 0, OPTION_FLAG, &as_json, nullptr, "print the whole report as JSON", 0, 0},
     {"size", 0, OPTION_UINT, &desc.size, "N", "pixels along a side of a view [1024]", 64, 4096},
     {"views", 0, OPTION_UINT, &desc.random_views, "N",
      "random views in addition to the 26 fixed ones [0]", 0, 4096},
     {"seed", 0, OPTION_UINT, &desc.seed, "S", "seed of the random views [0]", 0, UINT32_MAX},
     {"levels", 0, OPTION_UINT, &desc.levels, "N", "levels of detail to measure [all]", 1, 8},
+    {"tile-error", 0, OPTION_NUMBER, &tile_error, "X",
+     "of a world: the coarsest tiles within X of the source, in its units, not the leaves [0]", 0,
+     1e30},
     {"up", 0, OPTION_CHOICE, &desc.z_up, "y|z",
      "the up axis that the asset was cooked with [y]", 0, 0},
-    {"any-model", 0, OPTION_FLAG, &any_model, NULL,
+    {"any-model", 0, OPTION_FLAG, &any_model, nullptr,
      "also measure against a model that the asset was not cooked from, or that has changed", 0, 0},
     {"base-color", 0, OPTION_STRING, &desc.base_color, "FILE",
      "image for materials of OBJ and glTF that have texture coordinates but no readable image",
@@ -36,13 +40,15 @@ static const option options[] = {
     {"max-rms", 0, OPTION_NUMBER, &max_rms, "X",
      "exit 7 above this RMS distance of the source from the asset, in bounding-box diagonals",
      0, 1},
-    {0}};
+    {nullptr, 0, OPTION_FLAG, nullptr, nullptr, nullptr, 0, 0}};
 
 static const verb compare_verb = {
     "compare", "ASSET MODEL...",
     "Measures an asset against the models it was cooked from, on the CPU. format/measures.md,\n"
     "installed as share/doc/geotex/measures.md, defines every figure. An asset that names its\n"
-    "source is not compared with any other model (exit 3), unless --any-model is given.",
+    "source is not compared with any other model (exit 3), unless --any-model is given.\n"
+    "ASSET may be a world, DIR of gtx world: its tiles are measured together, seams between them\n"
+    "included. They and the models, in whole, are in memory at once.",
     2, MAX_FILES, options, MODEL_LIMITS};
 
 static int differs(const char *asset, const char *what, double value, const char *how, double limit)
@@ -55,11 +61,11 @@ static int differs(const char *asset, const char *what, double value, const char
 static int judge(const char *asset, const gtx_compare_result *result)
 {
     int code = EXIT_CODE_OK;
-    if (max_holes >= 0 && (double)result->hole_pixels > max_holes)
-        code = differs(asset, "hole pixels", (double)result->hole_pixels, "above --max-holes",
+    if (max_holes >= 0 && double(result->hole_pixels) > max_holes)
+        code = differs(asset, "hole pixels", double(result->hole_pixels), "above --max-holes",
                        max_holes);
-    if (max_walls >= 0 && (double)result->wall_pixels > max_walls)
-        code = differs(asset, "wall pixels", (double)result->wall_pixels, "above --max-walls",
+    if (max_walls >= 0 && double(result->wall_pixels) > max_walls)
+        code = differs(asset, "wall pixels", double(result->wall_pixels), "above --max-walls",
                        max_walls);
     if (min_iou >= 0 && result->silhouette_iou < min_iou)
         code = differs(asset, "silhouette IoU", result->silhouette_iou, "below --min-iou",
@@ -70,6 +76,38 @@ static int judge(const char *asset, const gtx_compare_result *result)
     return code;
 }
 
+static void print_figures(const gtx_compare_result &result)
+{
+    printf("hole pixels     %" PRIu64 " of %" PRIu64 "\n", result.hole_pixels,
+           result.surface_pixels);
+    printf("wall pixels     %" PRIu64 "\n", result.wall_pixels);
+    printf("silhouette IoU  %.5f (worst view %.5f)\n", result.silhouette_iou,
+           result.silhouette_iou_min);
+    printf("forward RMS     %.5f %% of the diagonal\n", 100 * result.forward_rms);
+    printf("reverse maximum %.5f %% of the diagonal\n", 100 * result.reverse_max);
+    printf("seams           99 %% within %.2f height steps, all within %.2f\n",
+           result.seam_p99_steps, result.seam_max_steps);
+}
+
+/* Fills both, or says why not; returns an exit code. `files` ends with the models. */
+static int measure(const char *const *files, int count, gtx_compare_result *result,
+                   gtx_report *report)
+{
+    return gtx::guarded(files[0], [&](std::string &about) {
+        const std::string world = gtx::world_at(files[0]);
+        if (!world.empty()) {
+            gtx::compare_world(world, files[1], tile_error, desc, result, report, about);
+            return int(EXIT_CODE_OK);
+        }
+        gtx_error error;
+        if (gtx_compare_files(files[0], files[1], &desc, result, report, &error)) {
+            about = error.rule ? files[0] : count > 2 ? "gtx compare" : files[1];
+            throw gtx::Error(error);
+        }
+        return int(EXIT_CODE_OK);
+    });
+}
+
 int cmd_compare(int argc, char **argv)
 {
     static const char *files[MAX_FILES];
@@ -78,32 +116,22 @@ int cmd_compare(int argc, char **argv)
     if (code >= 0)
         return code;
     desc.more = files + 2;
-    desc.more_count = (uint32_t)(count - 2);
+    desc.more_count = uint32_t(count - 2);
     desc.any_model = any_model;
     desc.progress = show_progress;
     desc.limits = cli_limits;
     catch_interrupt();
 
-    gtx_report report;
+    gtx_report report = {};
     gtx_compare_result result;
-    gtx_error error;
-    memset(&report, 0, sizeof report);
-    gtx_result ok = gtx_compare_files(files[0], files[1], &desc, &result, &report, &error);
+    code = measure(files, count, &result, &report);
     end_progress();
-    if (ok != GTX_OK)
-        return report_error(error.rule ? files[0] : count > 2 ? "gtx compare" : files[1], &error);
+    if (code)
+        return code;
     if (as_json) {
         code = print_result(report.json, report.size);
     } else {
-        printf("hole pixels     %" PRIu64 " of %" PRIu64 "\n", result.hole_pixels,
-               result.surface_pixels);
-        printf("wall pixels     %" PRIu64 "\n", result.wall_pixels);
-        printf("silhouette IoU  %.5f (worst view %.5f)\n", result.silhouette_iou,
-               result.silhouette_iou_min);
-        printf("forward RMS     %.5f %% of the diagonal\n", 100 * result.forward_rms);
-        printf("reverse maximum %.5f %% of the diagonal\n", 100 * result.reverse_max);
-        printf("seams           99 %% within %.2f height steps, all within %.2f\n",
-               result.seam_p99_steps, result.seam_max_steps);
+        print_figures(result);
         code = print_result("", 0);
     }
     for (size_t i = 0; i < report.warning_count; ++i)
