@@ -24,7 +24,7 @@ static const struct {
     {"combine", cmd_combine, "unite, intersect or subtract two closed assets"},
     {"render", cmd_render, "draw assets and meshes to a PNG, without a window"},
     {"view", cmd_view, "show assets and meshes in a window"},
-    {"compare", cmd_compare, "measure an asset against the mesh it was cooked from"},
+    {"compare", cmd_compare, "measure an asset or a world against the mesh it was cooked from"},
     {"bench", cmd_bench, "time an asset against the mesh it was cooked from"},
 };
 

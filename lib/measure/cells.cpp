@@ -31,7 +31,8 @@ void Cells::add_patch(const gtx_asset *asset, uint32_t index, const Vec3d &offse
     const gtx_patch &patch = asset->patches[index];
     const gtx_patch_frame frame = gtx_patch_frame_of(&patch, asset->info.height_bits);
     const double(&axis)[3][3] = frame.axis;
-    frames_.push_back({vector(frame.origin) + offset, vector(axis[0]), vector(axis[1]), vector(axis[2])});
+    frames_.push_back({vector(frame.origin) + offset, vector(axis[0]), vector(axis[1]),
+                       vector(axis[2])});
     for (uint32_t y = 0; y + 1 < patch.rect[3]; ++y) {
         cancel_point(8 * patch.rect[2]);
         for (uint32_t x = 0; x + 1 < patch.rect[2]; ++x) {

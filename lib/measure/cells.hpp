@@ -25,8 +25,8 @@ public:
     /* The point at (u, v) in 0..1 of cell i, and its trim in texels. */
     Vec3d point(size_t i, double u, double v) const;
     double trim(size_t i, double u, double v) const;
-    /* The patch of cell i, of all assets' numbered on; a patch's height step and the longer side of its texels, object
-     * units. */
+    /* The patch of cell i, numbered on from asset to asset; a patch's height step and the longer
+     * side of its texels, object units. */
     uint32_t patch(size_t i) const { return cells_[i].patch; }
     double height_step(uint32_t patch) const { return length(frames_[patch].z); }
     double texel(uint32_t patch) const

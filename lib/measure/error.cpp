@@ -1,4 +1,4 @@
-/* Distances between source and assets: points sampled on one, nearest points sought on the other. */
+/* Distances between source and assets: points of one, and the nearest points of the other. */
 #include "measure/cells.hpp"
 #include "measure/measure.hpp"
 #include "measure/sample.hpp"
@@ -16,7 +16,7 @@ static const size_t MAX_LOOKS = 192;
 
 namespace {
 
-/* Shapes for NearestTree. Everything here is relative to the first asset's anchor: boxes are floats. */
+/* Shapes for NearestTree. All is relative to the first asset's anchor: boxes are floats. */
 struct MeshTriangles {
     const Mesh &mesh;
     Vec3d anchor;

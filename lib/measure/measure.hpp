@@ -28,9 +28,9 @@ struct SurfaceError {
 SurfaceError surface_error(const Assets &assets, const Mesh &mesh,
                            const Vector<uint8_t> &junk, Task &task);
 
-/* Where patches meet, of one asset or of two: 100,000 points of the outlines of their cores (trim 0), each to the nearest
- * point of the other patches, in height steps of the coarser of the two. Points within two
- * texels of where the source ends have no other patch to meet. */
+/* Where patches meet, of one asset or of two: 100,000 points of the outlines of their cores (trim
+ * 0), each to the nearest point of the other patches, in height steps of the coarser of the two.
+ * Points within two texels of where the source ends have no other patch to meet. */
 struct SeamReport {
     uint64_t points = 0, within_two_steps = 0;
     double p99_steps = 0, max_steps = 0;

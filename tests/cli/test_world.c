@@ -51,6 +51,25 @@ static void a_world_has_all_triangles(void **state)
     assert_true(atoi(output) >= 10);
 }
 
+/* As an asset would be. */
+static void a_world_is_compared(void **state)
+{
+    (void)state;
+    expect(gtx("compare one big.obj --size 64 --max-holes 0 --min-iou 0.99"), 0);
+    expect_text("hole pixels     0 of ");
+    expect(gtx("compare one/tileset.json big.obj --size 64 --json --tile-error 0.1 -q"), 0);
+    expect_text("\"hole_pixels\": 0");
+    expect(gtx("compare one big.obj --size 64 --max-rms 1e-6"), 7);
+    expect_text("one: error[differs]: forward RMS");
+    expect(gtx("compare one none.obj --size 64"), 2);
+    expect_text("none.obj: error[read]");
+    expect(gtx("compare one big.obj --size 64 --max-memory 1M"), 6);
+    expect_text("--max-memory allows more");
+    expect(shell("cp -r one lost; rm lost/tiles/r?.gtx lost/tiles/r??.gtx"), 0);
+    expect(gtx("compare lost big.obj --size 64"), 2);
+    expect_text("lost/tiles/r");
+}
+
 /* All is there: nothing is written. */
 static void steps_do_nothing_twice(void **state)
 {
@@ -248,6 +267,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_world_has_all_triangles),
+        cmocka_unit_test(a_world_is_compared),
         cmocka_unit_test(steps_do_nothing_twice),
         cmocka_unit_test(ninja_makes_the_same),
         cmocka_unit_test(killed_workers_leave_nothing_wrong),
