@@ -23,13 +23,16 @@ namespace gtx::baking {
  * OVERLAP_COUNTS  RMS -7 % | +4 %, and 3 % more texels */
 constexpr double STEP = 0.5;   /* texels between samples on an edge */
 constexpr double FARTHEST = 1; /* texels of depth that a height may move */
+/* Texels along the source's normal that the fit may raise a height where there is source. At 0.5 an
+ * engine has 153 wall pixels for 81. */
+constexpr double RISE = 0.3;
 /* Texels that the fit and the stitch together may raise a height: along the normal, and above all
  * that the source has in the four cells around it. On a steep side a height may rise far, but not
- * over the crest beside it. One that rises further to meet a crest stands out as a fin. RISE at
- * 0.6: CesiumMan has 131 wall pixels for 18, the gargoyle 125 for 81; at 0.4 and 0.3 one pixel of
- * the gargoyle's second level is a hole. ABOVE_CREST at a third: an engine has 70 hole pixels for
- * 64. */
-constexpr double RISE = 0.5, ABOVE_CREST = 0.3;
+ * over the crest beside it. One that rises further to meet a crest stands out as a fin. RISE_IN_ALL
+ * at 0.6: CesiumMan has 131 wall pixels for 18, the gargoyle 125 for 81; at 0.4 and 0.3 one pixel
+ * of the gargoyle's second level is a hole. ABOVE_CREST at a third: an engine has 70 hole pixels
+ * for 64. */
+constexpr double RISE_IN_ALL = 0.5, ABOVE_CREST = 0.3;
 /* Distance below the source that counts as missed, in texels of the model, or of the chart's own
  * where these are finer. */
 constexpr double MISSED = 0.3;
@@ -189,19 +192,23 @@ static Vector<double> find_ceilings(const ChartField &field,
         const double highest = std::max({crest[texel], crest[texel - 1], crest[texel - w],
                                          crest[texel - w - 1]});
         ceiling[texel] = std::min(ceiling[texel] +
-                                      along_axis(field, facings, texel, RISE),
+                                      along_axis(field, facings, texel, RISE_IN_ALL),
                                   highest + ABOVE_CREST * field.flat.grid.coarse_pitch());
     }
     return ceiling;
 }
 
 /* How high the fit may put each height. */
-static Vector<double> highest_fits(const ChartField &field)
+static Vector<double> highest_fits(const ChartField &field, const Vector<double> &facings)
 {
     Vector<double> highest = field.cover.height;
-    for (size_t texel = 0; texel < highest.size(); ++texel)
-        highest[texel] = std::min(highest[texel] + FARTHEST * field.flat.grid.coarse_pitch(),
-                                  field.ceiling[texel]);
+    for (size_t texel = 0; texel < highest.size(); ++texel) {
+        const double farthest = FARTHEST * field.flat.grid.coarse_pitch();
+        const double rise = field.cover.triangle[texel] == NO_TRIANGLE
+                                ? farthest
+                                : std::min(farthest, along_axis(field, facings, texel, RISE));
+        highest[texel] = std::min(highest[texel] + rise, field.ceiling[texel]);
+    }
     return highest;
 }
 
@@ -212,7 +219,7 @@ double fit_heights(const Job &job, ChartField &field)
     const Vector<double> facings = facings_of(chart);
     const Vector<Observation> observations = observe_edges(job, field, facings);
     field.ceiling = find_ceilings(field, observations, facings);
-    const Vector<double> sampled = cover.height, highest = highest_fits(field);
+    const Vector<double> sampled = cover.height, highest = highest_fits(field, facings);
     const uint32_t row = uint32_t(chart.grid.w);
     const double farthest = FARTHEST * chart.grid.coarse_pitch();
     const double leeway = LEEWAY * chart.grid.coarse_pitch();

@@ -3,7 +3,8 @@
  * A height field shows some of a texel past its outline, in the map. On a steep side that is more
  * than a texel in space, and where a trim was relaxed to show a wall it goes on above or below the
  * wall's end. So trims rise there until nothing shows that is away from the source; what lies on
- * the source stays, and so does an end that no other height field meets. */
+ * the source stays, and so does an end that no other height field meets though one is near. What is
+ * only beside the source stays where another is near but does not show it: it may close a gap. */
 #include "bake/budget.hpp"
 #include "bake/seam/near_source.hpp"
 #include "bake/seam/seam.hpp"
@@ -22,6 +23,8 @@ constexpr double LONG = 0.6;
 /* Texels that another height field may be off, and texels outside its outline to which it counts,
  * where it meets an end. Where none has to, Spot's control mesh has a hole. */
 constexpr double MISSED = 0.3, REACHED = 0.1;
+/* Texels off and outside its outline up to which another is near. */
+constexpr double NEARBY = 1;
 /* Samples along a cell, less one. At half the gargoyle has 110 wall pixels for 92. */
 constexpr uint8_t PARTS = 4;
 /* A limit on time: looks at the source, and at other height fields, for a sample. */
@@ -32,6 +35,9 @@ namespace {
 constexpr double SHOWN = GTX_TRIM_OUTLINE + GTX_TRIM_TEXEL * GTX_TRIM_SHOWN; /* a code */
 
 enum Lies : uint8_t { ON_SOURCE, BESIDE_IT, AWAY_FROM_IT };
+
+/* What other height fields have at a point. */
+enum Other : uint8_t { NONE, NEAR_IT, THERE };
 
 /* A point that a cell shows beyond the outline. */
 struct Sample {
@@ -53,7 +59,7 @@ public:
     /* Finds where they lie; whether any is away from the source, at an end that is met. */
     bool judge(const NearSource &source, const HeightFields &fields);
     /* The trims as they are to be. */
-    Vector<uint8_t> take_back();
+    Vector<uint8_t> take_back(const HeightFields &fields);
 
     template <class Visit> void each_sample(Visit visit) const
     {
@@ -80,10 +86,13 @@ private:
         return sum;
     }
     bool is_long(size_t cell) const;
+    Other other_at(const CellPoint &place, double reached, const HeightFields &fields,
+                   Budget &budget) const;
     bool is_met(size_t first, size_t end, const HeightFields &fields, Budget &budget) const;
+    bool stays(const Sample &sample, const HeightFields &fields, Budget &budget) const;
     void hide(const CellPoint &place);
     void show(const CellPoint &place);
-    size_t show_cell(size_t cell, size_t sample);
+    size_t show_cell(size_t cell, size_t sample, const HeightFields &fields, Budget &budget);
 
     const HeightField &own_;
     const PatchMaps &maps_;
@@ -124,26 +133,50 @@ void Fins::collect()
         }
 }
 
-/* Whether another height field is where the samples of a cell begin, at the model's own border too:
- * parts that touch are often not joined. */
+/* Whether any comes to a place, in so many texels outside its outline, or near it. */
+Other Fins::other_at(const CellPoint &place, double reached, const HeightFields &fields,
+                     Budget &budget) const
+{
+    const Vec3d point = own_.point(place);
+    Other found = NONE;
+    fields.any_near(point, texel_, [&](const HeightField &other) {
+        double above, trim;
+        budget.spend(1);
+        cancel_point();
+        if (&other != &own_ && other.field_above(point, above, trim) && trim <= NEARBY) {
+            const double off = std::fabs(
+                above * dot(other.normal(other.place_of(point)), other.axis[2]));
+            if (trim <= reached && off <= MISSED * texel_)
+                found = THERE;
+            else if (off <= NEARBY * texel_)
+                found = NEAR_IT;
+        }
+        return found == THERE || budget.spent();
+    });
+    return found;
+}
+
+/* Whether another height field is where the samples of a cell begin. At the model's own border none
+ * has to be, unless one is near: parts that touch are often not joined. */
 bool Fins::is_met(size_t first, size_t end, const HeightFields &fields, Budget &budget) const
 {
     size_t least = first;
     for (size_t i = first; i < end; ++i)
         if (trim_at(trim_, samples_[i].place()) < trim_at(trim_, samples_[least].place()))
             least = i;
-    const Vec3d point = own_.point(samples_[least].place());
-    bool met = false;
-    fields.any_near(point, texel_, [&](const HeightField &other) {
-        double above, trim;
-        budget.spend(1);
-        cancel_point();
-        met = &other != &own_ && other.field_above(point, above, trim) && trim <= REACHED &&
-              std::fabs(above * dot(other.normal(other.place_of(point)), other.axis[2])) <=
-                  MISSED * texel_;
-        return met || budget.spent();
-    });
-    return met;
+    const std::array<size_t, 4> at = corners(samples_[first].cell);
+    const Other other = other_at(samples_[least].place(), REACHED, fields, budget);
+    return other == THERE ||
+           (other == NONE &&
+            std::all_of(at.begin(), at.end(), [&](size_t t) { return own_.at_border(t); }));
+}
+
+/* Whether what a cell showed there is to show whatever is taken back beside it. */
+bool Fins::stays(const Sample &sample, const HeightFields &fields, Budget &budget) const
+{
+    return sample.lies == ON_SOURCE ||
+           (sample.lies == BESIDE_IT && trim_at(trim_, sample.place()) > SHOWN &&
+            other_at(sample.place(), GTX_TRIM_SHOWN, fields, budget) == NEAR_IT);
 }
 
 bool Fins::judge(const NearSource &source, const HeightFields &fields)
@@ -201,7 +234,7 @@ void Fins::show(const CellPoint &place)
 
 /* Shows what a cell showed of the source: where it has samples, the first of which is given, they
  * tell. Returns the sample after them. */
-size_t Fins::show_cell(size_t cell, size_t sample)
+size_t Fins::show_cell(size_t cell, size_t sample, const HeightFields &fields, Budget &budget)
 {
     const bool is_sampled = sample < samples_.size() && samples_[sample].cell == cell;
     for (uint8_t y = 0; y <= PARTS; ++y)
@@ -209,14 +242,15 @@ size_t Fins::show_cell(size_t cell, size_t sample)
             const CellPoint place = Sample{uint32_t(cell), x, y, ON_SOURCE}.place();
             const double trim = trim_at(maps_.trim, place);
             if (trim <= SHOWN && (!is_sampled || trim <= GTX_TRIM_OUTLINE ||
-                                  samples_[sample++].lies == ON_SOURCE))
+                                  stays(samples_[sample++], fields, budget)))
                 show(place);
         }
     return sample;
 }
 
-Vector<uint8_t> Fins::take_back()
+Vector<uint8_t> Fins::take_back(const HeightFields &fields)
 {
+    Budget budget(double(LOOKS * samples_.size()));
     for (const Sample &sample : samples_)
         if (sample.lies == AWAY_FROM_IT)
             hide(sample.place());
@@ -231,7 +265,7 @@ Vector<uint8_t> Fins::take_back()
             if (has_codes(cell) && std::any_of(at.begin(), at.end(), [&](size_t t) {
                     return trim_[t] != maps_.trim[t];
                 }))
-                next = show_cell(cell, next);
+                next = show_cell(cell, next, fields, budget);
         }
     return std::move(trim_);
 }
@@ -253,7 +287,7 @@ void take_back_fins(const Job &job, Vector<PatchMaps> &patches, Task &task)
     Vector<Vector<uint8_t>> trims(patches.size());
     task.parallel(fields.size(), [&](size_t i) {
         if (fins[i].judge(source, fields))
-            trims[fields.patch(i)] = fins[i].take_back();
+            trims[fields.patch(i)] = fins[i].take_back(fields);
     });
     for (size_t i = 0; i < patches.size(); ++i)
         if (!trims[i].empty()) {
