@@ -99,8 +99,10 @@ static void balls_are_cut(void **)
         const std::string call = std::string("sphere.gtx near.gtx --lod-levels 0 --op ") + ops[i];
         const json report = report_of((call + " -o cut.gtx").c_str());
         expect(gtx("validate cut.gtx"), 0);
-        expect(gtx("combine %s -q -o again.gtx --threads 3", call.c_str()), 0);
-        same_files("cut.gtx", "again.gtx");
+        if (i == 2) { /* as the operations share the code that uses threads */
+            expect(gtx("combine %s -q -o again.gtx --threads 3", call.c_str()), 0);
+            same_files("cut.gtx", "again.gtx");
+        }
         volume[i] = report["result"]["volume"];
         all = report["assets"][0]["volume"].get<double>() +
               report["assets"][1]["volume"].get<double>();
