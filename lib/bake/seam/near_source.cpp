@@ -1,6 +1,8 @@
 /* Which triangles of the source are near points. */
 #include "bake/seam/near_source.hpp"
 
+#include "bake/lod/outlier.hpp"
+
 namespace gtx::baking {
 
 /* Sides of cells in texels: time against how much of the source is found near. */
@@ -89,6 +91,17 @@ double NearSource::distance(const Vec3d &point, double enough, uint32_t &near,
     if (near < triangles_.size())
         best = std::min(best, triangles_.distance2(near, point, best));
     return std::sqrt(tree_->nearer(best, point, &near, any, &looks, enough * enough));
+}
+
+bool NearSource::find_nearest(const Vec3d &point, Vec3d &nearest, size_t &looks) const
+{
+    uint32_t near = NO_TRIANGLE;
+    if (!(distance(point, 0, near, looks) < reach_) || !looks || near == NO_TRIANGLE)
+        return false;
+    const std::array<Vec3d, 3> &corners = triangles_.corners[near];
+    const std::array<double, 3> share = nearest_shares(corners, point);
+    nearest = corners[0] * share[0] + corners[1] * share[1] + corners[2] * share[2];
+    return true;
 }
 
 } // namespace gtx::baking

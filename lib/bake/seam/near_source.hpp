@@ -22,6 +22,9 @@ public:
     /* That of a triangle as near as `enough` will do. `near` is one to try first, NO_TRIANGLE for
      * none, and becomes the nearest; `looks` as of a NearestTree. */
     double distance(const Vec3d &point, double enough, uint32_t &near, size_t &looks) const;
+    /* The nearest point of the source; false where none is within reach, or `looks` are at an end.
+     */
+    bool find_nearest(const Vec3d &point, Vec3d &nearest, size_t &looks) const;
 
 private:
     struct Triangles {
