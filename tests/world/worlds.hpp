@@ -31,12 +31,12 @@ inline gtx::Mesh terrain(unsigned n)
     });
 }
 
-/* The same, 0.7 of the height at each octave, down to that of its vertices. */
-inline gtx::Mesh rough_terrain(unsigned n)
+/* The same, with so much of the height at each octave, down to that of its vertices. */
+inline gtx::Mesh rough_terrain(unsigned n, double gain = 0.7)
 {
-    return shapes::field(n, [n](double u, double v) {
+    return shapes::field(n, [n, gain](double u, double v) {
         double h = 0, size = 0.12, turn = 2;
-        for (double f = 3; f < 2.5 * n; f *= 2, size *= 0.7, turn += 2.4) {
+        for (double f = 3; f < 2.5 * n; f *= 2, size *= gain, turn += 2.4) {
             const double x = std::cos(turn) * u - std::sin(turn) * v;
             const double y = std::sin(turn) * u + std::cos(turn) * v;
             h += size * std::sin(f * x + 1.7 * turn) * std::cos(f * y - 0.9 * turn);

@@ -70,7 +70,8 @@ private:
     bool shown_by_any(Vector<const HeightField *> &near, const Sample &at, double min_facing,
                       Budget &budget) const;
     std::optional<RelaxedTrim> find_hidden(const Vector<const HeightField *> &near,
-                                           const Sample &at, Budget &budget) const;
+                                           const Sample &at, double min_facing,
+                                           Budget &budget) const;
 
     const Job &job_;
     const Partition &partition_;
@@ -124,9 +125,10 @@ bool Search::shown_by_any(Vector<const HeightField *> &near, const Sample &at, d
 }
 
 /* The cell of a height field that is right there, and hidden by its trim alone: the one that is
- * hidden least. */
+ * hidden least, of those that what is there faces as much. */
 std::optional<RelaxedTrim> Search::find_hidden(const Vector<const HeightField *> &near,
-                                               const Sample &at, Budget &budget) const
+                                               const Sample &at, double min_facing,
+                                               Budget &budget) const
 {
     const HeightField *found = nullptr;
     double least = MAX_RELAXED;
@@ -135,7 +137,7 @@ std::optional<RelaxedTrim> Search::find_hidden(const Vector<const HeightField *>
         double above, trim;
         budget.spend(1);
         cancel_point();
-        if (facing >= MIN_FACING && field->field_above(at.point, above, trim) &&
+        if (facing >= min_facing && field->field_above(at.point, above, trim) &&
             std::abs(above * facing) <= MAX_OFF * job_.pitch &&
             (trim < least ||
              (trim == least && (!found || fields_.is_before(*found, *field))))) {
@@ -236,7 +238,12 @@ double Search::uncovered_share(size_t field, const FrameInverse &inverse, uint32
                 near = facing_near({first, first + e, first + f}, normal, budget);
             if (shown_by_any(*near, at, steep ? STEEP : 0, budget))
                 continue;
-            if (const std::optional<RelaxedTrim> hidden = find_hidden(*near, at, budget))
+            std::optional<RelaxedTrim> hidden;
+            if (steep) /* a steep one's own cells miss it, though its trim hides nothing */
+                hidden = find_hidden(*near, at, STEEP, budget);
+            if (!hidden)
+                hidden = find_hidden(*near, at, MIN_FACING, budget);
+            if (hidden)
                 relaxed.push_back(*hidden);
             else
                 uncovered += !by_own || parts >= LONG;
