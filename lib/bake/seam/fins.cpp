@@ -12,7 +12,8 @@
 
 namespace gtx::baking {
 
-/* The figures below are of heights that rise by 0.6 texels (fit.cpp's RISE), which is 0.5 now. */
+/* Figures of AWAY, LONG, MISSED and PARTS are of heights that rise by 0.6 texels (fit.cpp's
+ * RISE_IN_ALL), which is 0.5 now. */
 
 /* Texels of the model from the source: what is farther is taken back, what is as near as ON stays.
  * With LONG at 0.4, where no end has to be met: the chair has 34 wall pixels, and 82 at 0.5, 0.25
