@@ -40,8 +40,8 @@ static void a_ball_has_its_content(void **)
     for (const Content &ball : {Content{"ball", GTX_PARTITION_CUTS, 0, 0x20bb26773f7e09ed},
                                 Content{"ball", GTX_PARTITION_VSA, NONE, 0x8a1670d692fba1aa},
                                 Content{"ball", GTX_PARTITION_PGP, NONE, 0xf6936329671a7910},
-                                Content{"ball", GTX_PARTITION_LAYERS, NONE, 0x6bf276f9f2f9aa95},
-                                Content{"ball", GTX_PARTITION_RELIEF, NONE, 0x1a9e38253da584d7}})
+                                Content{"ball", GTX_PARTITION_LAYERS, NONE, 0xab68b7ee09bb5a12},
+                                Content{"ball", GTX_PARTITION_RELIEF, NONE, 0x40e28dd33e35afad}})
         others += !has_content(ball_file(), ball);
     assert_int_equal(others, 0);
 }
@@ -54,31 +54,31 @@ static void models_have_their_content(void **)
     int others = 0;
     for (const Content &content : std::initializer_list<Content>{
              {"/scans/bunny.ply",
-              GTX_PARTITION_DEFAULT, NONE, 0xc735e43fcde2f613},
+              GTX_PARTITION_DEFAULT, NONE, 0xa5f71452e0ce93d7},
              {"/scans/gargo_3dhop.ply.gz",
-              GTX_PARTITION_DEFAULT, NONE, 0xba11a660dbb92292},
+              GTX_PARTITION_DEFAULT, NONE, 0xde1e868fb60cee9d},
              {"/textured/spot/spot/spot_control_mesh.obj",
-              GTX_PARTITION_DEFAULT, NONE, 0x291f3c6a312a2343},
+              GTX_PARTITION_DEFAULT, NONE, 0x3b7d31cda6237bc7},
              {"/gltf/CesiumMilkTruck/glTF/CesiumMilkTruck.gltf",
-              GTX_PARTITION_CUTS, NONE, 0xf7e0610b81a239d6},
+              GTX_PARTITION_CUTS, NONE, 0x02247c3c0675447d},
              {"/gltf/CesiumMilkTruck/glTF/CesiumMilkTruck.gltf",
-              GTX_PARTITION_DEFAULT, NONE, 0x7fd740a30114ef96},
+              GTX_PARTITION_DEFAULT, NONE, 0xb040342593cda9cd},
              {"/gltf/KhronosSampleModels/Duck/glTF_Binary/Duck.glb",
-              GTX_PARTITION_DEFAULT, 0, 0x1186d159573995e9},
+              GTX_PARTITION_DEFAULT, 0, 0x23409f01ab67c1df},
              {"/gltf/dragon_draco_119k.glb",
-              GTX_PARTITION_DEFAULT, 0, 0x2991cf6e50cc02c3},
+              GTX_PARTITION_DEFAULT, 0, 0x930645dbdbcd4c1a},
              {"/gltf/2CylinderEngine.glb",
-              GTX_PARTITION_CUTS, NONE, 0xaabdf0041fd0407c},
+              GTX_PARTITION_CUTS, NONE, 0xd19be6a0c77cc6b8},
              {"/scans/horse.ply.gz",
-              GTX_PARTITION_DEFAULT, NONE, 0x6d60807374243a71},
+              GTX_PARTITION_DEFAULT, NONE, 0x1887e8b1b27f8317},
              {"/scans/armadillo_86k.obj.gz",
-              GTX_PARTITION_DEFAULT, NONE, 0x334fbf2039731a15},
+              GTX_PARTITION_DEFAULT, NONE, 0xfd414006c64382ae},
              {"/nasty/gen_2000_tiny_components.ply",
-              GTX_PARTITION_DEFAULT, NONE, 0x4f5486d8fd285b05},
+              GTX_PARTITION_DEFAULT, NONE, 0x705a39b992a46ef1},
              {"/scans/bunny.ply",
-              GTX_PARTITION_VSA, NONE, 0xc504f9b87e08f692},
+              GTX_PARTITION_VSA, NONE, 0x52ae96e9f067d969},
              {"/scans/bunny.ply",
-              GTX_PARTITION_PGP, NONE, 0xe4bc28f8197e56db},
+              GTX_PARTITION_PGP, NONE, 0x813bbbe5e4e3ac7e},
          })
         others += !has_content(std::string(models) + content.model, content);
     assert_int_equal(others, 0);
