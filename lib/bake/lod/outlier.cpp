@@ -17,31 +17,6 @@ struct Outlier {
     std::array<double, 3> share{}; /* and what its corners have of it */
 };
 
-std::array<double, 3> nearest_shares(const std::array<Vec3d, 3> &c, const Vec3d &point)
-{
-    const Vec3d x = c[1] - c[0], y = c[2] - c[0], p = point - c[0];
-    const double xx = dot(x, x), xy = dot(x, y), yy = dot(y, y), px = dot(p, x), py = dot(p, y);
-    const double whole = xx * yy - xy * xy, b = yy * px - xy * py, d = xx * py - xy * px;
-    if (whole > 0 && b >= 0 && d >= 0 && b + d <= whole)
-        return {(whole - b - d) / whole, b / whole, d / whole};
-    std::array<double, 3> best = {1, 0, 0};
-    double least = INFINITY;
-    for (int k = 0; k < 3; ++k) {
-        const int n = (k + 1) % 3;
-        const Vec3d edge = c[n] - c[k], from = point - c[k];
-        const double size = dot(edge, edge);
-        const double at = size > 0 ? std::clamp(dot(from, edge) / size, 0.0, 1.0) : 0;
-        const Vec3d way = from - edge * at;
-        if (dot(way, way) >= least)
-            continue;
-        least = dot(way, way);
-        best = {0, 0, 0};
-        best[k] = 1 - at;
-        best[n] = at;
-    }
-    return best;
-}
-
 /* A triangle, and the way to a point from the nearest of its own, by the shares of its corners. */
 struct Reached {
     std::array<Vec3d, 3> corner;

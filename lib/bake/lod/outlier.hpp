@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bake/lod/fan.hpp"
+#include "mesh/near_shapes.hpp"
 #include "mesh/task.hpp"
 #include "mesh/vec.hpp"
 
@@ -18,9 +19,6 @@ struct Simplified {
     Vector<uint32_t> first;
     Vector<Vec3d> points;
 };
-
-/* By which shares of its corners a triangle is nearest to a point. */
-std::array<double, 3> nearest_shares(const std::array<Vec3d, 3> &corners, const Vec3d &point);
 
 /* Draws the surface out to where no point is farther outside than `most`, as far as `move` lets it,
  * which changes the position of a vertex, or does not and returns false. The task is then done to

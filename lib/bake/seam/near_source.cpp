@@ -1,8 +1,6 @@
 /* Which triangles of the source are near points. */
 #include "bake/seam/near_source.hpp"
 
-#include "bake/lod/outlier.hpp"
-
 namespace gtx::baking {
 
 /* Sides of cells in texels: time against how much of the source is found near. */
