@@ -250,7 +250,9 @@ typedef struct gtx_compare_desc {
     const char *texture_dir, *base_color; /* as for the cook */
     uint32_t any_model;           /* 1: do not refuse a model other than the asset's source, which
                                      is recognised by a hash of its content and its textures' */
-    uint32_t reserved[5];
+    uint32_t figures_only;        /* 1: measure no more than gtx_compare_result holds; the report
+                                     has level 0 alone, and no details */
+    uint32_t reserved[4];
 } gtx_compare_desc;
 
 /* Figures that a build may put limits on; format/measures.md defines each. */

@@ -19,7 +19,8 @@ static const option options[] = {
     {"views", 0, OPTION_UINT, &desc.random_views, "N",
      "random views in addition to the 26 fixed ones [0]", 0, 4096},
     {"seed", 0, OPTION_UINT, &desc.seed, "S", "seed of the random views [0]", 0, UINT32_MAX},
-    {"levels", 0, OPTION_UINT, &desc.levels, "N", "levels of detail to measure [all]", 1, 8},
+    {"levels", 0, OPTION_UINT, &desc.levels, "N",
+     "levels of detail in the report, with --json [all]", 1, 8},
     {"tile-error", 0, OPTION_NUMBER, &tile_error, "X",
      "of a world: the coarsest tiles within X of the source, in its units, not the leaves [0]", 0,
      1e30},
@@ -118,6 +119,7 @@ int cmd_compare(int argc, char **argv)
     desc.more = files + 2;
     desc.more_count = uint32_t(count - 2);
     desc.any_model = any_model;
+    desc.figures_only = !as_json;
     desc.progress = show_progress;
     desc.limits = cli_limits;
     catch_interrupt();

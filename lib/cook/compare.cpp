@@ -19,6 +19,7 @@ static void check(const gtx_compare_desc &desc)
     require_argument(desc.threads <= 1024, "threads is at most 1024");
     require_argument(desc.z_up <= 1, "z_up is 0 or 1");
     require_argument(desc.any_model <= 1, "any_model is 0 or 1");
+    require_argument(desc.figures_only <= 1, "figures_only is 0 or 1");
     require_models(desc.more, desc.more_count);
 }
 
@@ -141,7 +142,8 @@ void compare_models(const ShownAt &shown, uint32_t levels, Models &models,
 
     CompareOptions options;
     options.size = desc.size ? desc.size : 1024;
-    options.levels = desc.levels ? desc.levels : levels;
+    options.levels = desc.figures_only ? 1 : desc.levels ? desc.levels : levels;
+    options.details = !desc.figures_only;
     options.random_views = desc.random_views;
     options.seed = desc.seed;
     task.begin("measure");

@@ -281,6 +281,17 @@ static void a_comparison_measures_the_cook(void **)
     assert_true(result.silhouette_iou > 0.98);
     gtx_report_free(&report);
 
+    gtx_compare_result figures = {};
+    desc.figures_only = 1;
+    if (gtx_compare_files(output.c_str(), ball_file().c_str(), &desc, &figures, &report, &error))
+        fail_msg("%s", error.message);
+    json = schema::json::parse(report.json);
+    assert_string_equal(schema::broken(json, rules, rules).c_str(), "");
+    assert_int_equal(json["levels"].size(), 1);
+    assert_int_equal(json["details"].size(), 0);
+    assert_memory_equal(&figures, &result, sizeof result);
+    gtx_report_free(&report);
+
     desc.levels = 9;
     assert_int_equal(gtx_compare_files(output.c_str(), ball_file().c_str(), &desc, &result,
                                        nullptr, nullptr),
