@@ -29,6 +29,9 @@ constexpr double TWISTED = -0.4;
 /* The trim of a height field that is as near as this along the normal is relaxed by so many texels
  * at most. */
 constexpr double MAX_OFF = MAX_BELOW / 2, MAX_RELAXED = 1;
+/* The same of one that a place faces which is steep to its own chart. At half rough terrain has a
+ * slit (tests/world/test_rough), at double the gargoyle has 106 wall pixels for 80. */
+constexpr double MAX_RELAXED_STEEP = 0.5;
 /* What faces its axis less is steep: cells miss it. Another height field that is right there shows
  * it too; and is made for triangles of so many samples along a side, 6 texels. At 8 the gargoyle
  * has 39 % more patches, at 16 a bottle of 960 triangles 6 hole pixels. */
@@ -70,7 +73,7 @@ private:
     bool shown_by_any(Vector<const HeightField *> &near, const Sample &at, double min_facing,
                       Budget &budget) const;
     std::optional<RelaxedTrim> find_hidden(const Vector<const HeightField *> &near,
-                                           const Sample &at, double min_facing,
+                                           const Sample &at, double min_facing, double most,
                                            Budget &budget) const;
 
     const Job &job_;
@@ -124,14 +127,14 @@ bool Search::shown_by_any(Vector<const HeightField *> &near, const Sample &at, d
     return budget.spent();
 }
 
-/* The cell of a height field that is right there, and hidden by its trim alone: the one that is
- * hidden least, of those that what is there faces as much. */
+/* The cell of a height field that is right there, and hidden by its trim alone, of less than `most`
+ * texels: the one that is hidden least, of those that what is there faces as much. */
 std::optional<RelaxedTrim> Search::find_hidden(const Vector<const HeightField *> &near,
-                                               const Sample &at, double min_facing,
+                                               const Sample &at, double min_facing, double most,
                                                Budget &budget) const
 {
     const HeightField *found = nullptr;
-    double least = MAX_RELAXED;
+    double least = most;
     for (const HeightField *field : near) {
         const double facing = dot(at.normal, field->axis[2]);
         double above, trim;
@@ -240,9 +243,9 @@ double Search::uncovered_share(size_t field, const FrameInverse &inverse, uint32
                 continue;
             std::optional<RelaxedTrim> hidden;
             if (steep) /* a steep one's own cells miss it, though its trim hides nothing */
-                hidden = find_hidden(*near, at, STEEP, budget);
+                hidden = find_hidden(*near, at, STEEP, MAX_RELAXED_STEEP, budget);
             if (!hidden)
-                hidden = find_hidden(*near, at, MIN_FACING, budget);
+                hidden = find_hidden(*near, at, MIN_FACING, MAX_RELAXED, budget);
             if (hidden)
                 relaxed.push_back(*hidden);
             else
