@@ -41,6 +41,18 @@ typedef struct picture {
 
 static picture first, second;
 
+/* An engine's own main that shows normals. */
+#define NORMALS_MAIN                                                                               \
+    "layout(location = 0) out vec4 color;\n"                                                       \
+    "void main()\n"                                                                                \
+    "{\n"                                                                                          \
+    "    gtx_surface s;\n"                                                                         \
+    "    if (!gtx_find(s))\n"                                                                      \
+    "        discard;\n"                                                                           \
+    "    color = vec4(0.5 + 0.5 * gtx_world_normal(s), 1.0);\n"                                    \
+    "    gtx_write_depth(s);\n"                                                                    \
+    "}\n"
+
 static inline void draw(stage *s, const gtx_view *view, gtx_method method,
                         const gtx_instance *instances, uint32_t count, picture *out)
 {

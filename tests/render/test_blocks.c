@@ -67,18 +67,9 @@ static void passes_agree(void **state)
 static void by_a_main_of_the_engines_own(void **state)
 {
     STAGE_OR_SKIP(state);
-    static const char text[] = "layout(location = 0) out vec4 color;\n"
-                               "void main()\n"
-                               "{\n"
-                               "    gtx_surface s;\n"
-                               "    if (!gtx_find(s))\n"
-                               "        discard;\n"
-                               "    color = vec4(0.5 + 0.5 * gtx_world_normal(s), 1.0);\n"
-                               "    gtx_write_depth(s);\n"
-                               "}\n";
     gtx_error error = {0};
     gtx_shading *shading = NULL;
-    must(gtx_shading_create(s->renderer, text, &shading, &error), &error);
+    must(gtx_shading_create(s->renderer, NORMALS_MAIN, &shading, &error), &error);
     subject shown = sphere_open(s);
     for (int i = 0; i < 3; ++i) {
         gtx_view view = standing((float)i);

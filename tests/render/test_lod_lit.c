@@ -71,18 +71,9 @@ static void light_is_what_rays_find(void **state)
 static void own_mains_find_normals(void **state)
 {
     STAGE_OR_SKIP(state);
-    static const char text[] = "layout(location = 0) out vec4 color;\n"
-                               "void main()\n"
-                               "{\n"
-                               "    gtx_surface s;\n"
-                               "    if (!gtx_find(s))\n"
-                               "        discard;\n"
-                               "    color = vec4(0.5 + 0.5 * gtx_world_normal(s), 1.0);\n"
-                               "    gtx_write_depth(s);\n"
-                               "}\n";
     gtx_error error = {0};
     gtx_shading *shading;
-    must(gtx_shading_create(s->renderer, text, &shading, &error), &error);
+    must(gtx_shading_create(s->renderer, NORMALS_MAIN, &shading, &error), &error);
     for (int i = 0; i < 8; ++i) {
         subject shown = open_sphere(s, LOD_PLAIN, i & 1 ? GTX_PATCH_TWO_SIDED : 0);
         gtx_camera camera = camera_around(shown.asset);
