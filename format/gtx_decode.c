@@ -118,7 +118,7 @@ static unsigned check_header(struct file *f)
         return 100;
     if (f->size < HEADER)
         return 118;
-    if (u16(h + 12) != 0 || u16(h + 14) != 5)
+    if (u16(h + 12) != 0 || u16(h + 14) != 6)
         return 101;
     if (u32(h + 16) != HEADER)
         return 102;
@@ -662,18 +662,22 @@ static unsigned undo_filter(const struct file *f, struct section *s)
 
 /* ---- 6: the LOD mesh ---- */
 
+#define NONE 0xffffffu
+
 struct edge {
     uint32_t from, to, across;
 };
 
 struct steps {
-    const byte *words, *numbers;  /* of triangles, of positions */
+    const byte *steps, *numbers;  /* of triangles, of positions */
     byte *indices, *positions;
     uint32_t vertices, triangles, met, edges;
-    struct edge recent[16];
+    uint64_t words;
+    uint32_t *after, *before;     /* of each vertex, along the boundary */
+    struct edge latest[16];
 };
 
-/* Number i of `count`, of `width` bytes each, that lie in planes. */
+/* Number i of `width` bytes that lie in planes of `count`. */
 static uint32_t from_planes(const byte *p, uint64_t count, uint64_t i, int width)
 {
     uint32_t value = 0;
@@ -693,7 +697,8 @@ static void meet(struct steps *s, uint32_t vertex, const uint32_t *near)
         if (known)
             expected = u16(at + 6 * (uint64_t)near[0]) + u16(at + 6 * (uint64_t)near[1]) -
                        u16(at + 6 * (uint64_t)near[2]);
-        uint32_t d = from_planes(s->numbers + 2 * k * s->vertices, s->vertices, vertex, 2);
+        uint64_t count = s->vertices;
+        uint32_t d = from_planes(s->numbers + k * count, 3 * count, vertex, 2);
         uint32_t value = expected + (d & 1 ? ~(d >> 1) : d >> 1);
         byte *out = s->positions + 6 * (uint64_t)vertex + 2 * k;
         out[0] = (byte)value;
@@ -702,36 +707,88 @@ static void meet(struct steps *s, uint32_t vertex, const uint32_t *near)
     ++s->met;
 }
 
-static void put_edge(struct steps *s, uint32_t from, uint32_t to, uint32_t across)
+static uint32_t told(struct steps *s)
 {
-    struct edge e = {from, to, across};
-    s->recent[s->edges++ % 16] = e;
+    const byte *words = s->steps + s->triangles;
+    return (s->met - from_planes(words, 3 * (uint64_t)s->triangles, s->words++, 3)) & NONE;
+}
+
+static uint32_t link_of(const struct steps *s, const uint32_t *links, uint32_t vertex)
+{
+    return vertex < s->vertices ? links[vertex] : NONE;
+}
+
+static void drop_edge(struct steps *s, uint32_t from, uint32_t to)
+{
+    for (uint32_t i = s->edges; i-- > 0;) {
+        if (s->latest[i].from != from || s->latest[i].to != to)
+            continue;
+        for (--s->edges; i < s->edges; ++i)
+            s->latest[i] = s->latest[i + 1];
+        return;
+    }
+}
+
+/* The oldest edge stands first. */
+static void put_edge(struct steps *s, struct edge e)
+{
+    for (uint32_t i = 1; s->edges == 16 && i < 16; ++i)
+        s->latest[i - 1] = s->latest[i];
+    s->edges -= s->edges == 16;
+    s->latest[s->edges++] = e;
+}
+
+static void add_triangle(struct steps *s, const uint32_t v[3], int joined)
+{
+    int meets[3];
+    for (int k = 0; k < 3; ++k)
+        if (v[k] >= s->vertices)
+            return;
+    for (int k = 0; k < 3; ++k)
+        meets[k] = s->after[v[k]] == v[(k + 1) % 3];
+    for (int k = 0; k < 3; ++k)
+        if (meets[k])
+            s->after[v[k]] = s->before[v[(k + 1) % 3]] = NONE;
+    for (int k = 0; k < 3; ++k) {
+        uint32_t from = v[k], to = v[(k + 1) % 3];
+        if (meets[k] || (joined && k == 0)) {
+            drop_edge(s, from, to);
+        } else {
+            struct edge e = {to, from, v[(k + 2) % 3]};
+            s->after[to] = from;
+            s->before[from] = to;
+            put_edge(s, e);
+        }
+    }
 }
 
 static void undo_triangle(struct steps *s, uint64_t t)
 {
-    uint32_t word[3], v[3];
-    for (uint64_t k = 0; k < 3; ++k)
-        word[k] = from_planes(s->words + 4 * k * s->triangles, s->triangles, t, 4);
-    if (word[0] < 16 && word[0] < s->edges) {
-        struct edge e = s->recent[(s->edges - 1 - word[0]) % 16];
-        uint32_t near[3] = {e.from, e.to, e.across};
-        v[0] = e.from;
-        v[1] = e.to;
-        v[2] = s->met - word[2];
-        meet(s, v[2], near);
+    uint32_t v[3], near[3], start = s->steps[t] / 4, kind = s->steps[t] % 4;
+    int joined = start < s->edges;
+    if (joined) {
+        struct edge e = s->latest[s->edges - 1 - start];
+        near[0] = v[0] = e.from;
+        near[1] = v[1] = e.to;
+        near[2] = e.across;
     } else {
-        word[0] -= 16;
-        for (int k = 0; k < 3; ++k) {
-            v[k] = s->met - word[k];
-            meet(s, v[k], NULL);
-        }
-        put_edge(s, v[1], v[0], v[2]);
+        v[0] = told(s);
+        meet(s, v[0], NULL);
+        near[0] = near[1] = near[2] = v[0];
+        v[1] = start == 16 ? link_of(s, s->after, v[0]) : told(s);
+        meet(s, v[1], near);
+        near[0] = near[1] = near[2] = v[1];
     }
-    put_edge(s, v[2], v[1], v[0]);
-    put_edge(s, v[0], v[2], v[1]);
+    if (kind == 0)
+        v[2] = s->met;
+    else if (kind == 1)
+        v[2] = link_of(s, s->after, v[1]);
+    else
+        v[2] = kind == 2 ? link_of(s, s->before, v[0]) : told(s);
+    meet(s, v[2], near);
     for (int k = 0; k < 12; ++k)
         s->indices[12 * t + (uint64_t)k] = (byte)(v[k / 4] >> k % 4 * 8);
+    add_triangle(s, v, joined);
 }
 
 static int64_t absolute(int64_t n)
@@ -813,12 +870,19 @@ static unsigned undo_steps(struct section *s)
     int normals = u32(s->bytes + 28) & 2 ? 1 : 0;
     if (normals)
         arrays += 2 * (uint64_t)steps.vertices + 4;
-    if (arrays > left || (left - arrays) % 4 ||
+    if (arrays > left || (left - arrays) % 4 || steps.vertices > NONE ||
         (normals && steps.vertices > 2 * (uint64_t)steps.triangles))
         return 213;
     byte *out = malloc((size_t)s->size);
-    if (!out)
+    steps.after = malloc(((size_t)steps.vertices + 1) * 2 * sizeof *steps.after);
+    if (!out || !steps.after) {
+        free(out);
+        free(steps.after);
         return NO_MEMORY;
+    }
+    steps.before = steps.after + steps.vertices;
+    for (uint64_t i = 0; i < 2 * (uint64_t)steps.vertices; ++i)
+        steps.after[i] = NONE;
     memcpy(out, s->bytes, LOD_HEADER);
     uint64_t firsts = (left - arrays) / 4, indices = LOD_HEADER + 4 * firsts;
     uint32_t first = 0;
@@ -827,14 +891,15 @@ static unsigned undo_steps(struct section *s)
         for (int k = 0; k < 4; ++k)
             out[LOD_HEADER + 4 * i + (uint64_t)k] = (byte)(first >> 8 * k);
     }
-    steps.words = s->bytes + indices;
+    steps.steps = s->bytes + indices;
     steps.indices = out + indices;
-    steps.numbers = steps.words + 12 * (uint64_t)steps.triangles;
+    steps.numbers = steps.steps + 12 * (uint64_t)steps.triangles;
     steps.positions = steps.indices + 12 * (uint64_t)steps.triangles;
     for (uint64_t t = 0; t < steps.triangles; ++t)
         undo_triangle(&steps, t);
     while (steps.met < steps.vertices)
         meet(&steps, steps.met, NULL);
+    free(steps.after);
     unsigned rule = 0;
     if (normals)
         rule = undo_normals(&steps, steps.numbers + 6 * (uint64_t)steps.vertices,
@@ -1039,7 +1104,7 @@ static unsigned check_lod(const struct file *f, const struct section *s,
     const byte *h = s->bytes, *first = h + LOD_HEADER;
     uint64_t vertices = u32(h + 20), triangles = u32(h + 24);
     int normals = u32(h + 28) & 2 ? 1 : 0;
-    if (!triangles || vertices > 1u << 28 ||
+    if (!triangles || vertices > NONE ||
         s->size != 36 + 4 * (uint64_t)f->patches + 12 * triangles + 6 * vertices +
                        (normals ? 2 * vertices + 4 : 0))
         return 500;

@@ -96,7 +96,7 @@ typedef struct gtx_cook_desc {
     uint32_t dilation;            /* rings of dilated texels in all maps but heights and trim, up to
                                      128; 0 = 2^(mips - 1) */
     uint32_t mips;                /* mip levels of the same maps, 1..8; 0 = 4 */
-    int32_t zstd_level;           /* 1..19; 0 = 3 (stored, in a build without zstd); -1 = stored */
+    int32_t zstd_level;           /* 1..19; 0 = 6 (stored, in a build without zstd); -1 = stored */
     uint32_t threads;             /* up to 1024; 0 = all processors */
     float unit;                   /* metres per object unit; 0 = 1 */
     uint32_t z_up;                /* 1: the models' +Z becomes +Y, and their +Y becomes -Z */

@@ -370,7 +370,7 @@ typedef struct gtx_encode_desc {
     const gtx_allocator *allocator;
     const gtx_jobs *jobs;         /* used during the call; encoding then holds all sections in
                                      memory at once */
-    int32_t zstd_level;           /* 1..19; 0 = 3 (stored, in a build without zstd); -1 = stored */
+    int32_t zstd_level;           /* 1..19; 0 = 6 (stored, in a build without zstd); -1 = stored */
     uint32_t reserved[5];
 } gtx_encode_desc;
 

@@ -27,9 +27,22 @@ size_t gtx_decoder_size(void)
     return ZSTD_estimateDCtxSize();
 }
 
+/* Differences hardly repeat: shorter matches cost more than they save, unless zstd weighs each.
+ * Bunny and dragon: 1.6 % fewer bytes at level 3 and up to 9, and no slower; half, zstd's own, is
+ * without; there is nothing above 7, which gives 1 % fewer at level 3 and the same from 5 on. */
+#define SHORTEST_MATCH 6u
+
+static ZSTD_compressionParameters parameters_of(int level, uint64_t size)
+{
+    ZSTD_compressionParameters out = ZSTD_getCParams(level, size, 0);
+    if (out.strategy < ZSTD_btopt && out.minMatch < SHORTEST_MATCH)
+        out.minMatch = SHORTEST_MATCH;
+    return out;
+}
+
 size_t gtx_encoder_size(int level, uint64_t size)
 {
-    return ZSTD_estimateCCtxSize_usingCParams(ZSTD_getCParams(level, size, 0));
+    return ZSTD_estimateCCtxSize_usingCParams(parameters_of(level, size));
 }
 
 static void apply(const gtx_section *section, const gtx_asset *asset, const uint8_t *data,
@@ -41,7 +54,7 @@ static void apply(const gtx_section *section, const gtx_asset *asset, const uint
     else if (section->filter == GTX_FILTER_HEIGHTS)
         gtx_heights_apply(image, data, coded);
     else if (section->filter == GTX_FILTER_STEPS)
-        gtx_lod_filter_apply(data, (size_t)section->size, coded);
+        gtx_lod_filter_apply(data, (size_t)section->size, coded, coded + section->size);
     else
         gtx_filter_apply(image, section->filter, data, coded);
 }
@@ -78,7 +91,12 @@ size_t gtx_encode_section(const gtx_encoder *encoder, const gtx_section *section
     ZSTD_CCtx *context = ZSTD_initStaticCCtx(encoder->memory, encoder->size);
     if (!context || size < 2)
         return 0;
-    size_t written = ZSTD_compressCCtx(context, out, size - 1, data, size, encoder->level);
+    const unsigned shortest = parameters_of(encoder->level, size).minMatch;
+    if (ZSTD_isError(ZSTD_CCtx_reset(context, ZSTD_reset_session_and_parameters)) ||
+        ZSTD_isError(ZSTD_CCtx_setParameter(context, ZSTD_c_compressionLevel, encoder->level)) ||
+        ZSTD_isError(ZSTD_CCtx_setParameter(context, ZSTD_c_minMatch, (int)shortest)))
+        return 0;
+    const size_t written = ZSTD_compress2(context, out, size - 1, data, size);
     return ZSTD_isError(written) ? 0 : written;
 }
 

@@ -26,6 +26,8 @@ uint64_t gtx_coded_size(const gtx_section *section)
 
 uint64_t gtx_apply_size(const gtx_section *section, gtx_map_shape image)
 {
+    if (section->filter == GTX_FILTER_STEPS)
+        return 2 * section->size; /* links of the boundary */
     if (section->filter != GTX_FILTER_SURFACE)
         return section->filter || GTX_BIG_ENDIAN ? section->size : 0; /* gtx_bytes_in_file */
     /* The image with empty texels as the rules have them, marks of the level and of level 0. */

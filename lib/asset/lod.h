@@ -12,7 +12,7 @@ extern "C" {
 #endif
 
 #define GTX_LOD_HEADER 32u
-#define GTX_MAX_LOD_VERTICES (1u << 28)
+#define GTX_MAX_LOD_VERTICES ((1u << 24) - 1) /* words of the filter have 3 bytes */
 
 /* Bytes of a level without normals. */
 static inline uint64_t gtx_lod_size(uint64_t patches, uint64_t vertices, uint64_t triangles)
@@ -39,10 +39,10 @@ bool gtx_lod_load(const uint8_t *bytes, uint64_t size, uint32_t patches, gtx_lod
 /* Writes a level as gtx_lod_size and gtx_lod_normals_size bytes. */
 void gtx_lod_store(const gtx_lod_mesh *lod, uint32_t patches, uint8_t *out);
 
-/* The filter of LOD mesh sections; `in` and `out` are distinct and have `size` bytes. Undoing is
- * false when the counts do not fit the size; whatever else the bytes are, it stays within them. It
- * overwrites what it has read. */
-void gtx_lod_filter_apply(const uint8_t *in, size_t size, uint8_t *out);
+/* The filter of LOD mesh sections; `in` and `out` are distinct and have `size` bytes, as have
+ * `links`, for its own use. Undoing is false when the counts do not fit the size; whatever else the
+ * bytes are, it stays within them. It overwrites what it has read. */
+void gtx_lod_filter_apply(const uint8_t *in, size_t size, uint8_t *out, uint8_t *links);
 bool gtx_lod_filter_undo(uint8_t *in, size_t size, uint8_t *out);
 
 /* lod_normals.c: the normals that a level's triangles tell, 2 bytes a vertex, as the filter expects

@@ -7,7 +7,7 @@
 #include <stdbool.h>
 
 #define GTX_FORMAT_MAJOR 0u
-#define GTX_FORMAT_MINOR 5u
+#define GTX_FORMAT_MINOR 6u
 #define GTX_HEADER_SIZE 192u
 #define GTX_ENTRY_SIZE 64u
 #define GTX_META_LIMIT (1u << 20)

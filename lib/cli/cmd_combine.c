@@ -11,7 +11,7 @@
 #include <string.h>
 
 static const char *output, *report_path;
-static int32_t zstd_level = 3;
+static int32_t zstd_level = 6;
 static uint32_t op = UINT32_MAX, lod_levels = 5, threads;
 static double openness;
 static bool strict;
@@ -24,7 +24,7 @@ static const option options[] = {
      "accept assets whose inside is in doubt at up to this share of points [0.01]", 1e-9, 1},
     {"lod-levels", 0, OPTION_UINT, &lod_levels, "N",
      "most LOD meshes, made from the combined maps; 0 = none at all [5]", 0, 5},
-    {"zstd", 0, OPTION_INT, &zstd_level, "L", "compression level, 0 = stored [3]", 0, 19},
+    {"zstd", 0, OPTION_INT, &zstd_level, "L", "compression level, 0 = stored [6]", 0, 19},
     {"strict", 0, OPTION_FLAG, &strict, NULL, "warnings are errors (exit 3)", 0, 0},
     THREADS_OPTION(&threads),
     PROGRESS_OPTION,

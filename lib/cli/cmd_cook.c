@@ -16,7 +16,7 @@ static gtx_cook_desc desc;
 static const char *output, *name, *report_path, *depfile_path, *allow, *shard_text, *textures;
 static uint32_t partition, extract, lod_levels = 5, job_count, shard = 1, shards = 1;
 static double unit = 1, texel_density = -1; /* by their detail */
-static int32_t zstd_level = 3;
+static int32_t zstd_level = 6;
 static bool adaptive, strict, if_changed, per_mesh;
 
 static const option options[] = {
@@ -43,7 +43,7 @@ static const option options[] = {
      "rings of texels to dilate by [2^(mips-1)]", 1, 128},
     {"lod-levels", 0, OPTION_UINT, &lod_levels, "N",
      "most LOD meshes, besides far ones; 0 = none at all [5]", 0, 5},
-    {"zstd", 0, OPTION_INT, &zstd_level, "L", "compression level, 0 = stored [3]", 0, 19},
+    {"zstd", 0, OPTION_INT, &zstd_level, "L", "compression level, 0 = stored [6]", 0, 19},
     {"texture-format", 0, OPTION_STRING, &textures, "KIND,...",
      "also store block-compressed maps: bc, bc-small, etc2; normals: of normals too", 0, 0},
     {"up", 0, OPTION_CHOICE, &desc.z_up, "y|z",

@@ -12,7 +12,7 @@
 #include <string.h>
 
 static made_file making = {.verb = "filter"};
-static int32_t zstd_level = 3;
+static int32_t zstd_level = 6;
 static uint32_t lod_levels = 5;
 static steps chosen;
 static bool naive;
@@ -37,7 +37,7 @@ static const option options[] = {
      "blur each patch by itself, as in the paper: seams open", 0, 0},
     {"lod-levels", 0, OPTION_UINT, &lod_levels, "N",
      "most LOD meshes, made from the filtered maps; 0 = none at all [5]", 0, 5},
-    {"zstd", 0, OPTION_INT, &zstd_level, "L", "compression level, 0 = stored [3]", 0, 19},
+    {"zstd", 0, OPTION_INT, &zstd_level, "L", "compression level, 0 = stored [6]", 0, 19},
     MADE_OPTIONS(making),
     {0}};
 

@@ -19,7 +19,7 @@ static made_file making = {.verb = "horizons"};
 static const char *range, *property_range, *spacing, *origin, *color_range;
 static double missing = NAN, rotation = NAN, unit = 1;
 static uint32_t colors, lod_levels = 5;
-static int32_t zstd_level = 3;
+static int32_t zstd_level = 6;
 static bool depths, one_surface, local_metres, categories;
 static char property_name[64];
 static double latitude = NAN; /* of the first grid in degrees */
@@ -56,7 +56,7 @@ static const option options[] = {
     {"mips", 0, OPTION_UINT, &desc.mips, "N", "mip levels of normals and colours [4]", 1, 8},
     {"lod-levels", 0, OPTION_UINT, &lod_levels, "N",
      "most LOD meshes, besides far ones; 0 = none at all [5]", 0, 5},
-    {"zstd", 0, OPTION_INT, &zstd_level, "L", "compression level, 0 = stored [3]", 0, 19},
+    {"zstd", 0, OPTION_INT, &zstd_level, "L", "compression level, 0 = stored [6]", 0, 19},
     {"unit", 0, OPTION_NUMBER, &unit, "M", "metres per unit of the grids [1]", 1e-30, 1e30},
     THREADS_OPTION(&desc.threads),
     PROGRESS_OPTION,

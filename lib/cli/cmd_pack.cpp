@@ -152,7 +152,7 @@ static int run(const char *input, std::string &about)
     if (lod_levels)
         asset = with_lod(asset);
     gtx_encode_desc desc = {};
-    desc.zstd_level = encode_level(zstd_level >= 0 ? zstd_level : 3);
+    desc.zstd_level = encode_level(zstd_level >= 0 ? zstd_level : 6);
     return made_save(&making, asset.get(), &desc);
 }
 

@@ -15,9 +15,9 @@
 
 namespace gtx {
 
-/* As zstd counts: 3 is its own default. */
+/* As in asset/write.c. */
 #ifdef GTX_ZSTD
-constexpr int DEFAULT_ZSTD = 3;
+constexpr int DEFAULT_ZSTD = 6;
 #else
 constexpr int DEFAULT_ZSTD = 0;
 #endif

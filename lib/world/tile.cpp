@@ -80,10 +80,7 @@ AssetOwner TileCook::cook(const std::string &ply)
 
 std::string TileCook::encoded(const gtx_asset *asset) const
 {
-    gtx_encode_desc encode = {};
-#ifdef GTX_ZSTD
-    encode.zstd_level = 3;
-#endif
+    const gtx_encode_desc encode = {};
     void *data = nullptr;
     size_t size = 0;
     gtx_error error;

@@ -113,7 +113,12 @@ static Vector<uint32_t> first_there(const Vector<Place> &places)
 
 LodLevel stored(const LevelMesh &mesh, size_t patches, const Lattice &lattice)
 {
-    const auto &[triangles, patch, places, kept] = mesh;
+    const auto &[corners, patch, places, kept] = mesh;
+    const Vector<uint32_t> first = first_there(places);
+    Vector<Triangle> triangles = corners;
+    for (Triangle &t : triangles)
+        for (uint32_t &v : t)
+            v = first[v];
     Vector<Vector<uint32_t>> members(patches);
     for (size_t t = 0; t < triangles.size(); ++t)
         if (patch[t] != NO_PATCH && !mesh.collapses(triangles[t]))
@@ -122,7 +127,6 @@ LodLevel stored(const LevelMesh &mesh, size_t patches, const Lattice &lattice)
     LodLevel level;
     std::copy_n(lattice.origin, 3, level.origin);
     level.step = lattice.step;
-    const Vector<uint32_t> first = first_there(places);
     Vector<uint32_t> name(places.size(), NO_VERTEX);
     Vector<Triangle> ordered;
     Strip strip(triangles, patch, places.size());
@@ -133,7 +137,7 @@ LodLevel stored(const LevelMesh &mesh, size_t patches, const Lattice &lattice)
     level.first.push_back(uint32_t(ordered.size()));
     for (const Triangle &t : ordered) {
         for (uint32_t v : t) {
-            uint32_t &n = name[first[v]];
+            uint32_t &n = name[v];
             if (n == NO_VERTEX) {
                 n = uint32_t(level.positions.size() / 3);
                 level.positions.insert(level.positions.end(), places[v].begin(), places[v].end());

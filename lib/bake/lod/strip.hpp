@@ -1,27 +1,27 @@
 /* The order of an LOD mesh's triangles. */
 #pragma once
 
+#include "asset/boundary.h"
 #include "bake/lod/parts.hpp"
 
 #include <algorithm>
-#include <deque>
 
 namespace gtx::baking {
 
-/* Edges among which the next triangle is looked for, as the asset's coding does: 0.2 % bytes. */
-constexpr size_t RECENT_EDGES = 16;
-
 using Triangle = std::array<uint32_t, 3>;
+constexpr uint32_t NO_TRIANGLE = UINT32_MAX;
 
-/* Triangles in an order where most share an edge with one just before: few bytes, and vertices that
- * a processor still remembers. */
+/* Triangles in an order in which most join the boundary of those before at one of its latest edges,
+ * as the asset codes them, and close a corner of it where they can: few bytes, and vertices that a
+ * processor still remembers. Bunny: closing first takes 3 % fewer bytes than the latest edge first,
+ * and 11 % fewer vertices beyond a memory of 16. */
 class Strip {
 public:
-    Strip(const Vector<Triangle> &triangles, const Vector<uint32_t> &patch,
-          size_t vertices)
+    Strip(const Vector<Triangle> &triangles, const Vector<uint32_t> &patch, size_t vertices)
         : triangles_(triangles), patch_(patch), start_(vertices + 1, 0), left_(triangles.size(), 0),
-          passed_(3 * triangles.size(), 0)
+          passed_(3 * triangles.size(), 0), met_(vertices, 0), links_(GTX_LINK_BYTES(vertices))
     {
+        gtx_boundary_begin(&boundary_, links_.data(), uint32_t(vertices));
         for (const Triangle &t : triangles)
             for (uint32_t v : t)
                 ++start_[v + 1];
@@ -45,54 +45,87 @@ public:
     {
         for (uint32_t t : members)
             left_[t] = 1;
-        Triangle next;
         auto go_on = [&] {
+            Triangle next;
             while (find_beside(patch, next))
-                take(next, out);
+                take(next, true, out);
         };
         go_on();
         for (uint32_t seed : members) {
             if (!left_[seed])
                 continue;
             left_[seed] = 0;
-            take(triangles_[seed], out);
+            take(along(triangles_[seed]), false, out);
             go_on();
         }
     }
 
 private:
-    using Edge = std::array<uint32_t, 2>;
-
-    void take(const Triangle &t, Vector<Triangle> &out)
+    void take(const Triangle &t, bool joined, Vector<Triangle> &out)
     {
         out.push_back(t);
-        for (int k = 0; k < 3; ++k)
-            recent_.push_front({t[(k + 1) % 3], t[k]});
-        while (recent_.size() > RECENT_EDGES)
-            recent_.pop_back();
+        for (uint32_t v : t)
+            met_[v] = 1;
+        gtx_boundary_add(&boundary_, t.data(), joined);
     }
+    /* Corners turned so that an edge of the boundary comes first, if there is one. */
+    Triangle along(const Triangle &t) const
+    {
+        for (int k = 0; k < 3; ++k)
+            if (gtx_boundary_after(&boundary_, t[k]) == t[(k + 1) % 3])
+                return turned(t, k);
+        return t;
+    }
+    /* Whether the corner after an edge of the boundary is the next one along it, either way. */
+    bool closes(const gtx_boundary_edge &edge, uint32_t corner) const
+    {
+        return gtx_boundary_after(&boundary_, edge.to) == corner ||
+               gtx_boundary_before(&boundary_, edge.from) == corner;
+    }
+    /* At the latest edges: what closes a corner, else what has a new vertex, else any. */
     bool find_beside(uint32_t patch, Triangle &found)
     {
-        for (const Edge &edge : recent_) {
-            const Key wanted = {patch, edge[1]};
-            const auto of = [&](uint32_t t) { return key(t, edge[0]); };
-            const auto end = around_.begin() + start_[edge[0] + 1];
-            auto at = std::lower_bound(around_.begin() + start_[edge[0]], end, wanted,
-                                       [&](uint32_t t, const Key &k) { return of(t) < k; });
-            if (at == end || of(*at) != wanted)
+        uint32_t best = NO_TRIANGLE;
+        bool is_new = false;
+        for (uint32_t age = 0; age < boundary_.count; ++age) {
+            const gtx_boundary_edge &edge = boundary_.latest[age];
+            const uint32_t t = left_at(patch, edge);
+            if (t == NO_TRIANGLE)
                 continue;
-            uint32_t &passed = passed_[size_t(at - around_.begin())];
-            for (at += passed; at != end && of(*at) == wanted; ++at, ++passed) {
-                if (!left_[*at])
-                    continue;
-                const Triangle &t = triangles_[*at];
-                const int k = corner_of(t, edge[0]);
-                found = {t[k], t[(k + 1) % 3], t[(k + 2) % 3]};
-                left_[*at] = 0;
-                return true;
+            const Triangle here = turned(triangles_[t], corner_of(triangles_[t], edge.from));
+            const bool first = best == NO_TRIANGLE, fresh = !met_[here[2]];
+            const bool last = !fresh && closes(edge, here[2]);
+            if (first || last || (fresh && !is_new)) {
+                best = t;
+                found = here;
+                is_new = fresh;
             }
+            if (last)
+                break;
         }
-        return false;
+        if (best != NO_TRIANGLE)
+            left_[best] = 0;
+        return best != NO_TRIANGLE;
+    }
+    /* A triangle of the patch that has the edge and is to be followed. */
+    uint32_t left_at(uint32_t patch, const gtx_boundary_edge &edge)
+    {
+        const Key wanted = {patch, edge.to};
+        const auto of = [&](uint32_t t) { return key(t, edge.from); };
+        const auto end = around_.begin() + start_[edge.from + 1];
+        auto at = std::lower_bound(around_.begin() + start_[edge.from], end, wanted,
+                                   [&](uint32_t t, const Key &k) { return of(t) < k; });
+        if (at == end || of(*at) != wanted)
+            return NO_TRIANGLE;
+        uint32_t &passed = passed_[size_t(at - around_.begin())];
+        for (at += passed; at != end && of(*at) == wanted; ++at, ++passed)
+            if (left_[*at])
+                return *at;
+        return NO_TRIANGLE;
+    }
+    static Triangle turned(const Triangle &t, int k)
+    {
+        return {t[k], t[(k + 1) % 3], t[(k + 2) % 3]};
     }
     static int corner_of(const Triangle &t, uint32_t v)
     {
@@ -111,7 +144,8 @@ private:
     Vector<uint32_t> start_, around_;      /* those around each vertex, by key */
     Vector<uint8_t> left_;                 /* to be followed */
     Vector<uint32_t> passed_;              /* of a key, at its first: how many are not left */
-    std::deque<Edge> recent_;
+    Vector<uint8_t> met_, links_;          /* of vertices */
+    gtx_boundary boundary_;
 };
 
 } // namespace gtx::baking

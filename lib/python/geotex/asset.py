@@ -190,7 +190,7 @@ class Asset:
             self._caster = Caster(self)
         return self._caster.raycast(origins, directions, **options)
 
-    def encode(self, *, zstd: int = 3) -> bytes:
+    def encode(self, *, zstd: int = 6) -> bytes:
         """The bytes of a .gtx file; `zstd` 0 stores them, 1..19 compresses."""
         desc, data, size = ffi.new("gtx_encode_desc *"), ffi.new("void **"), ffi.new("size_t *")
         error = native.new_error()
@@ -201,7 +201,7 @@ class Asset:
         finally:
             native.free(data[0])
 
-    def save(self, path: Union[str, "os.PathLike[str]"], *, zstd: int = 3) -> None:
+    def save(self, path: Union[str, "os.PathLike[str]"], *, zstd: int = 6) -> None:
         """Writes a .gtx file: whole, or not at all."""
         desc, error = ffi.new("gtx_encode_desc *"), native.new_error()
         desc.zstd_level = zstd or -1  # to C, 0 is the default

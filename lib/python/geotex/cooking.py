@@ -101,7 +101,7 @@ def _call(desc: Any, progress: Optional[ProgressFn], limits: Optional[Limits],
 
 def cook(model: Source, output: Optional[Path] = None, *, name: Optional[Path] = None,
          partition: str = "cuts", extract: str = "cpu", charts: int = 0, resolution: int = 0,
-         height_bits: int = 0, dilation: int = 0, mips: int = 0, zstd: int = 3, threads: int = 0,
+         height_bits: int = 0, dilation: int = 0, mips: int = 0, zstd: int = 6, threads: int = 0,
          unit: float = 1, up: str = "y", error: float = 0, measure: bool = False,
          lod_levels: int = 5, charts_ply: Optional[Path] = None, more: Sequence[Path] = (),
          strict: bool = False, allow: Sequence[str] = (), if_changed: bool = False,
