@@ -172,8 +172,8 @@ static gtx_result write_all(writer *w, void **data, size_t *size, gtx_error *err
     return GTX_OK;
 }
 
-/* Bunny and dragon: 3 % fewer bytes than at 3, zstd's own, for 1 % of a cook's time; 9 takes 1 % fewer
- * yet for twice that time. */
+/* Bunny and dragon: 3 % fewer bytes than at 3, zstd's own, for 1 % of a cook's time; 1 % fewer yet
+ * at 9, for twice that time. */
 enum { DEFAULT_LEVEL = 6 };
 
 gtx_result gtx_encode(const gtx_asset *asset, const gtx_encode_desc *desc, void **data,
