@@ -3,7 +3,7 @@
  * nodes fetch their heights. Map coordinates and the frame of normals follow from the patch's
  * record. With GTX_LIT, for geotex_lit.frag and geotex_lod_lit.frag, triangles are so small, or so
  * even, that the light at their corners is enough; with GTX_VERTEX_NORMALS, for an engine's own
- * main, the normals there are.
+ * main, the normals and colours there are.
  *
  * Needs geotex_height_field.glsl and geotex_view.glsl before it, and with GTX_LIT and GTX_MATERIALS
  * geotex_surface.glsl and geotex_material.glsl. What hardly changes over a triangle is found here
@@ -11,7 +11,7 @@
  * more that a triangle carries costs a few per cent on llvmpipe. */
 #if !defined(GTX_LIT) || !defined(GTX_MATERIALS)
 GTX_SAMPLER(2, highp sampler2DArray) gtx_normals;
-#if defined(GTX_LIT) && !defined(GTX_PLAIN)
+#if defined(GTX_GRID) && (defined(GTX_VERTEX_NORMALS) || defined(GTX_LIT)) && !defined(GTX_PLAIN)
 GTX_SAMPLER(3, highp sampler2DArray) gtx_colors;
 #endif
 #endif
@@ -69,7 +69,11 @@ GTX_VARYING(1) out vec3 gtx_behind;         /* the same, of the back */
 #else
 GTX_VARYING(0) out vec2 gtx_at;             /* place in the page, 0..1 */
 GTX_VARYING(1) flat out vec3 gtx_page;      /* page; mip level; how far normals stray from it */
+#if defined(GTX_VERTEX_NORMALS) && defined(GTX_GRID)
+GTX_VARYING(5) out vec4 gtx_color;
+#else
 GTX_VARYING(5) flat out vec4 gtx_color;     /* where no map gives colours, the 2.4th root of rgb */
+#endif
 #ifdef GTX_FRONT
 GTX_VARYING(2) flat out vec3 gtx_toward;    /* the light among the patch's normals, and the eye: */
 GTX_VARYING(3) GTX_STEADY out vec3 gtx_eye; /* unit, over how far normals stray; with GTX_BLOCKS
@@ -280,6 +284,10 @@ void main()
     gtx_id = gtx_instance;
 #endif
     gtx_color = gtx_tint;
+#if defined(GTX_VERTEX_NORMALS) && defined(GTX_GRID)
+    if (gtx_maps.y > 0.0)
+        gtx_color *= textureLod(gtx_colors, vec3(place, page), level);
+#endif
 #ifdef GTX_PLAIN
     gtx_color.rgb = pow(max(gtx_tint.rgb, 0.0), vec3(1.0 / 2.4));
 #endif

@@ -13,7 +13,11 @@ GTX_VARYING(2) flat in vec3 gtx_normal_x;
 GTX_VARYING(3) flat in vec3 gtx_normal_y;
 GTX_VARYING(4) flat in vec3 gtx_normal_z;
 #endif
+#if defined(GTX_VERTEX_NORMALS) && defined(GTX_GRID)
+GTX_VARYING(5) in vec4 gtx_color;
+#else
 GTX_VARYING(5) flat in vec4 gtx_color;
+#endif
 GTX_VARYING(6) GTX_STEADY in vec3 gtx_ray;
 GTX_VARYING(7) in vec3 gtx_object;
 GTX_VARYING(8) in vec3 gtx_world;
@@ -104,8 +108,10 @@ vec3 gtx_world_normal(gtx_surface s)
 vec4 gtx_albedo(gtx_surface s)
 {
     vec4 color = gtx_color;
+#ifndef GTX_VERTEX_NORMALS
     if (gtx_maps.y > 0.0)
         color *= textureLod(gtx_colors, gtx_place(), gtx_page.y);
+#endif
     return color;
 }
 

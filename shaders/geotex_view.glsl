@@ -106,15 +106,14 @@ vec3 gtx_decode_normal(vec2 code)
  * outlines cost 0.2 dB; 0.6 gains no more, and lights open sheets wrongly. */
 #define GTX_RIM 0.1
 
-/* The normal of a height field seen from behind along `ray`: it turns round, as a two-sided mesh's
- * does. But where the height field sticks out a little from behind the visible one, that would
- * light it from the wrong side: towards an outline it is mirrored in the picture plane, which is
- * continuous across. */
+/* The normal of a height field seen from behind along `ray`, unit: it turns round, as a two-sided
+ * mesh's does. But where the height field sticks out a little from behind the visible one, that
+ * would light it from the wrong side: towards an outline it is mirrored in the picture plane, which
+ * is continuous across. */
 vec3 gtx_from_behind(vec3 n, vec3 ray)
 {
-    vec3 d = normalize(ray);
-    float away = max(dot(n, d), 0.0);
-    return mix(n - 2.0 * away * d, -n, smoothstep(0.0, GTX_RIM, away));
+    float away = max(dot(n, ray), 0.0);
+    return mix(n - 2.0 * away * ray, -n, smoothstep(0.0, GTX_RIM, away));
 }
 
 /* x^(1 / 2.4) by its fourth root, within a tenth of a byte from 0.003 to 1: two square roots and a
