@@ -1,16 +1,20 @@
-/* How texels are coded: image filters there and back, what is filled in by rule, normals in two
- * bytes and their frame. */
+/* How texels and LOD meshes are coded: filters there and back, what is filled in by rule, normals
+ * in two bytes and their frame. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <setjmp.h>
 #include <stdint.h>
 #include <cmocka.h>
 
+#include "asset/boundary.h"
 #include "asset/codec.h"
 #include "asset/fill.h"
 #include "asset/lanes.h"
+#include "asset/lod.h"
+#include "base/bytes.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 static void test_filters(void **state)
@@ -233,6 +237,75 @@ static void test_normal_frame(void **state)
         assert_true(fabsf(rows[i / 3][i % 3] - right[i / 3][i % 3]) < 1e-6f);
 }
 
+/* Of a fan, open and closed. */
+static void test_boundary(void **state)
+{
+    (void)state;
+    uint8_t links[GTX_LINK_BYTES(6)];
+    gtx_boundary b;
+    gtx_boundary_begin(&b, links, 6);
+    for (uint32_t v = 0; v < 7; ++v)
+        assert_int_equal(gtx_boundary_after(&b, v), GTX_NO_NEIGHBOUR);
+    /* A fan around 0: the boundary runs 1 -> 0 -> 4 -> 3 -> 2 -> 1 once it has three triangles. */
+    gtx_boundary_add(&b, (uint32_t[]){0, 1, 2}, false);
+    gtx_boundary_add(&b, (uint32_t[]){0, 2, 3}, true);
+    gtx_boundary_add(&b, (uint32_t[]){0, 3, 4}, true);
+    const uint32_t after[] = {4, 0, 1, 2, 3};
+    for (uint32_t v = 0; v < 5; ++v) {
+        assert_int_equal(gtx_boundary_after(&b, v), after[v]);
+        assert_int_equal(gtx_boundary_before(&b, after[v]), v);
+    }
+    assert_int_equal(b.count, 5);
+    assert_int_equal(b.latest[0].from, 0);
+    assert_int_equal(b.latest[0].to, 4);
+    assert_int_equal(b.latest[0].across, 3);
+    /* The last of the fan closes it: 0 is inside. */
+    gtx_boundary_add(&b, (uint32_t[]){0, 4, 1}, true);
+    assert_int_equal(gtx_boundary_after(&b, 0), GTX_NO_NEIGHBOUR);
+    assert_int_equal(gtx_boundary_before(&b, 0), GTX_NO_NEIGHBOUR);
+    assert_int_equal(gtx_boundary_after(&b, 1), 4);
+    assert_int_equal(b.count, 4);
+    /* Corners that are no vertices change nothing. */
+    gtx_boundary_add(&b, (uint32_t[]){0, 6, 1}, false);
+    gtx_boundary_add(&b, (uint32_t[]){0, 1, UINT32_MAX}, true);
+    assert_int_equal(b.count, 4);
+}
+
+/* Triangles that touch in any way, at most `reach` vertices back, come back as they were. */
+static void test_any_triangles(void **state)
+{
+    (void)state;
+    uint32_t seed = 1;
+    for (uint32_t round = 0; round < 400; ++round) {
+        const uint32_t triangles = 1 + round % 60, reach = 3 + round % 9;
+        uint32_t index[180], met = 0;
+        for (uint32_t i = 0; i < 3 * triangles; ++i) {
+            const uint32_t first = i - i % 3;
+            do {
+                seed = seed * 1664525u + 1013904223u;
+                const uint32_t back = (seed >> 16) % reach;
+                index[i] = back > met ? met : met - back;
+            } while ((i > first && index[i] == index[first]) ||
+                     (i > first + 1 && index[i] == index[first + 1]));
+            met += index[i] == met;
+        }
+        const size_t size = (size_t)gtx_lod_size(1, met, triangles);
+        uint8_t *in = calloc(4, size), *coded = in + size, *out = coded + size;
+        assert_non_null(in);
+        gtx_store_u32(in + 20, met);
+        gtx_store_u32(in + 24, triangles);
+        gtx_store_u32(in + GTX_LOD_HEADER + 4, triangles);
+        for (uint32_t i = 0; i < 3 * triangles; ++i)
+            gtx_store_u32(in + GTX_LOD_HEADER + 8 + 4 * (size_t)i, index[i]);
+        for (size_t i = GTX_LOD_HEADER + 8 + 12 * (size_t)triangles; i < size; ++i)
+            in[i] = (uint8_t)(i * i * 29 >> 3);
+        gtx_lod_filter_apply(in, size, coded, out + size);
+        assert_true(gtx_lod_filter_undo(coded, size, out));
+        assert_memory_equal(in, out, size);
+        free(in);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -244,6 +317,8 @@ int main(void)
         cmocka_unit_test(test_fill_of_many),
         cmocka_unit_test(test_normals),
         cmocka_unit_test(test_normal_frame),
+        cmocka_unit_test(test_boundary),
+        cmocka_unit_test(test_any_triangles),
     };
     return cmocka_run_group_tests_name("codings", tests, NULL, NULL);
 }
