@@ -10,6 +10,11 @@
 
 #include <inttypes.h>
 
+/* Texels for each triangle, at most: fewer blur what lies between vertices. And where vertices have
+ * normals, by which the forward pass lights what has neither colours nor materials: other passes
+ * alone look these up. */
+enum { TEXELS = 4, LIT_TEXELS = 1 };
+
 /* What comes of the first bytes. */
 typedef struct beginning {
     gtx_check check;
@@ -222,10 +227,9 @@ static void decode(beginning *b)
     }
 }
 
-/* The preview's shape, which hangs on patches and on the finest LOD mesh: both are there. */
-static uint64_t plan_preview(beginning *b, gtx_lod_mesh *mesh)
+/* The preview's, and what making it takes. */
+static uint64_t preview_bytes(const beginning *b, const gtx_lod_mesh *mesh)
 {
-    gtx_get_lod_mesh(b->source, 0, mesh);
     gtx_sizes sizes = {0};
     for (uint32_t k = 0; k < b->lods; ++k)
         sizes.lod[k] = b->source->lod_size[k];
@@ -235,10 +239,26 @@ static uint64_t plan_preview(beginning *b, gtx_lod_mesh *mesh)
            gtx_preview_scratch(&b->info, mesh->vertex_count);
 }
 
+static void shape_preview(beginning *b, uint32_t shift)
+{
+    b->shift = shift;
+    b->info = gtx_preview_info(&b->layout.info, shift, b->normals);
+    b->info.lod_levels = b->lods;
+    b->info.has_color = b->images[GTX_SECTION_COLOR] >= 0;
+    b->info.has_material = b->images[GTX_SECTION_MATERIAL] >= 0;
+    b->info.has_emission = b->images[GTX_SECTION_EMISSION] >= 0;
+    b->info.emission_scale = b->info.has_emission ? b->info.emission_scale : 0;
+    b->info.file_size = b->size;
+}
+
 static gtx_asset *preview(beginning *b)
 {
     gtx_lod_mesh mesh;
-    if (!is_allowed(b, source_bytes(b) + plan_preview(b, &mesh)))
+    gtx_get_lod_mesh(b->source, 0, &mesh);
+    const bool images = b->info.has_color || b->info.has_material || b->info.has_emission;
+    if (mesh.normals && !images && !b->normals)
+        shape_preview(b, gtx_preview_shift(&b->layout.info, LIT_TEXELS * mesh.triangle_count));
+    if (!is_allowed(b, source_bytes(b) + preview_bytes(b, &mesh)))
         return NULL;
     gtx_asset *out = gtx_preview_new(b->source, &b->info, b->shift, b->images);
     if (!out)
@@ -258,15 +278,9 @@ static uint64_t most_triangles(const beginning *b)
 
 static gtx_asset *read_parts(beginning *b)
 {
-    b->shift = b->normals ? 0 : gtx_preview_shift(&b->layout.info, most_triangles(b));
+    b->shift = b->normals ? 0 : gtx_preview_shift(&b->layout.info, TEXELS * most_triangles(b));
     choose_images(b);
-    b->info = gtx_preview_info(&b->layout.info, b->shift, b->normals);
-    b->info.lod_levels = b->lods;
-    b->info.has_color = b->images[GTX_SECTION_COLOR] >= 0;
-    b->info.has_material = b->images[GTX_SECTION_MATERIAL] >= 0;
-    b->info.has_emission = b->images[GTX_SECTION_EMISSION] >= 0;
-    b->info.emission_scale = b->info.has_emission ? b->info.emission_scale : 0;
-    b->info.file_size = b->size;
+    shape_preview(b, b->shift);
     gtx_decoding_plan(&b->decoding, b->parts, b->part_count, &b->layout.info, b->options->jobs);
     b->decoding.hashed = !b->options->skip_hash;
     if (b->decoding.zstd && !gtx_has_zstd())

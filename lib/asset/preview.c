@@ -11,9 +11,6 @@
 #include <math.h>
 #include <string.h>
 
-/* Texels for each triangle, at most: fewer blur what lies between vertices. */
-enum { TEXELS = 4 };
-
 /* Looks at texels for each of them and each triangle. Five models take at most 2; of hostile files,
  * in which all triangles may lie over all texels, most triangles are left out. */
 enum { MAX_LOOKS = 16 };
@@ -25,13 +22,13 @@ static uint64_t texels_of(const gtx_info *info)
 
 /* Rectangles start and end on multiples of 2^(mip_count - 1): halved once less, all have 2 texels a
  * side; pages must have 8. */
-uint32_t gtx_preview_shift(const gtx_info *info, uint64_t triangles)
+uint32_t gtx_preview_shift(const gtx_info *info, uint64_t texels)
 {
     const uint32_t side = info->page_width < info->page_height ? info->page_width
                                                                : info->page_height;
     uint32_t shift = 0;
     while (shift + 2 < info->mip_count && side >> (shift + 1) >= 8 &&
-           texels_of(info) >> 2 * shift > TEXELS * triangles)
+           texels_of(info) >> 2 * shift > texels)
         ++shift;
     return shift;
 }

@@ -4,9 +4,9 @@
 
 #include "asset/section.h"
 
-/* The mip levels by which a preview's maps are smaller than the asset's: it has up to four texels
- * for each of `triangles`, and valid rectangles. */
-uint32_t gtx_preview_shift(const gtx_info *info, uint64_t triangles);
+/* The mip levels by which a preview's maps are smaller than the asset's: it has at most so many
+ * texels where rectangles stay valid then. */
+uint32_t gtx_preview_shift(const gtx_info *info, uint64_t texels);
 
 /* The preview's gtx_info, without its colours and the sizes of its LOD meshes. With `mips` it has
  * the asset's mip levels from the shift on. */

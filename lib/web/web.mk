@@ -55,6 +55,7 @@ $(web)/core.a: $(web_objects)
 comma := ,
 space := $() $()
 web_methods := GL HEAPU8 HEAPU32 HEAPF32 HEAPF64 UTF8ToString stringToUTF8 lengthBytesUTF8
+# Of the stack web-test needs less than 64 KB (-sSTACK_OVERFLOW_CHECK=2).
 web_faces := $(patsubst %.c,$(web)/%.o,$(wildcard lib/web/*.c))
 $(web_package)/core.js: $(web_faces) $(web)/core.a $(web)/zstd.o
 	@mkdir -p $(@D)
@@ -62,7 +63,7 @@ $(web_package)/core.js: $(web_faces) $(web)/core.a $(web)/zstd.o
 	$(Q)$(emcc) -Oz --closure 0 -o $@ $^ --no-entry \
 	  -sMODULARIZE=1 -sEXPORT_ES6=1 -sENVIRONMENT=web,worker -sFILESYSTEM=0 -sMALLOC=emmalloc \
 	  -sMIN_WEBGL_VERSION=2 -sMAX_WEBGL_VERSION=2 -sALLOW_MEMORY_GROWTH=1 \
-	  -sINITIAL_MEMORY=2MB -sTOTAL_STACK=1MB \
+	  -sINITIAL_MEMORY=512KB -sTOTAL_STACK=128KB \
 	  -sGL_SUPPORT_AUTOMATIC_ENABLE_EXTENSIONS=0 -sINCOMING_MODULE_JS_API=[locateFile] \
 	  -sEXPORTED_RUNTIME_METHODS=$(subst $(space),$(comma),$(web_methods)) \
 	  -sEXPORTED_FUNCTIONS=_malloc,_free

@@ -31,7 +31,7 @@ try {
       const seconds = (ms) => (ms / 1000).toFixed(2);
       console.log(`| ${name} | ${title} | ${Math.round(size / 1000)} |` +
                   ` ${Math.round((m.bytes ?? size) / 1000)} | ${seconds(m.first)} | ${seconds(m.full)} |` +
-                  ` ${m.task.toFixed(0)} | ${m.frame.toFixed(0)} | ${(m.memory / 1e6).toFixed(0)} |` +
+                  ` ${m.task.toFixed(0)} | ${m.frame.toFixed(0)} | ${(m.memory / 1e6).toFixed(1)} |` +
                   ` ${m.iou.toFixed(4)} | ${m.psnr?.toFixed(1) ?? ''} | ${m.wholePsnr?.toFixed(1) ?? ''} |`);
       const picture = await page.evaluate(() => shot());
       await writeFile(join(folder, `${name}-${kind}-${error ?? 0}.png`),
