@@ -249,9 +249,15 @@ LodNormals lod_normals(const gtx_lod_mesh &level, const NormalMaps &maps)
 void add_lod_normals(Vector<gtx_lod_mesh> &levels, const NormalMaps &maps, Vector<LodNormals> &out,
                      Task &task)
 {
+    constexpr size_t AT_ONCE = 2; /* of levels most have one or two with normals */
     out.assign(levels.size(), {});
-    task.parallel(levels.size(), [&](size_t k) { out[k] = lod_normals(levels[k], maps); }, 0, 0);
-    for (size_t k = 0; k < levels.size() && !out[k].codes.empty(); ++k) {
+    for (size_t k = 0; k < levels.size(); ++k) {
+        if (k % AT_ONCE == 0)
+            task.parallel(std::min(AT_ONCE, levels.size() - k), [&](size_t i) {
+                out[k + i] = lod_normals(levels[k + i], maps);
+            }, 0, 0);
+        if (out[k].codes.empty())
+            return;
         levels[k].flags |= GTX_LOD_NORMALS;
         levels[k].normals = out[k].codes.data();
         levels[k].normal_error = out[k].error;
