@@ -118,12 +118,14 @@ void smooth_normals(Surface &surface, float large)
         for (size_t t = 0; t < mesh.triangle_count(); ++t)
             for (uint32_t v : mesh.triangles[t])
                 at_vertex[v] += surface.facets[t].normal * surface.facets[t].size;
+        for (Vec3f &normal : at_vertex)
+            normal = normalize(normal);
         for (size_t t = 0; t < mesh.triangle_count(); ++t) {
             if (surface.facets[t].size > large)
                 continue;
             Vec3f sum;
             for (uint32_t v : mesh.triangles[t])
-                sum += normalize(at_vertex[v]);
+                sum += at_vertex[v];
             sum = normalize(sum);
             surface.facets[t].normal = sum == Vec3f() ? surface.normal[t] : sum;
         }
@@ -206,14 +208,16 @@ Surface make_surface(const Mesh &mesh, double pitch, Task &task)
 }
 
 void for_each_region(const Vector<Region> &regions, Task &task,
-                     const std::function<void(size_t)> &body, double from, double to)
+                     const std::function<void(size_t)> &body, double from, double to, size_t times)
 {
     Vector<uint32_t> order(regions.size());
     std::iota(order.begin(), order.end(), 0u);
     std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
         return regions[a].size() > regions[b].size();
     });
-    task.parallel(order.size(), [&](size_t n) { body(order[n]); }, from, to);
+    task.parallel(times * order.size(), [&](size_t n) {
+        body(times * order[n / times] + n % times);
+    }, from, to);
 }
 
 Vector<Region> split_region(const Region &parent, const Vector<uint32_t> &labels,

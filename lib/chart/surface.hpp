@@ -45,9 +45,10 @@ double expected_pitch(const Mesh &mesh, size_t charts);
 double texels_of(const Surface &surface, const Region &region, double pitch);
 
 /* Runs body(i) for every region on the task's threads, as Task::parallel does, but the largest
- * first: one that begins last is waited for. */
+ * first: one that begins last is waited for. With several `times` a region, i / times is its. */
 void for_each_region(const Vector<Region> &regions, Task &task,
-                     const std::function<void(size_t)> &body, double from = 0, double to = 1);
+                     const std::function<void(size_t)> &body, double from = 0, double to = 1,
+                     size_t times = 1);
 
 /* The triangles of `parent` whose label is below `count`, a region a label. Labels are local. */
 Vector<Region> split_region(const Region &parent, const Vector<uint32_t> &labels,

@@ -275,6 +275,23 @@ void Task::parallel(size_t count, const std::function<void(size_t)> &body, doubl
     advance(to);
 }
 
+size_t Task::parts(size_t count, size_t least) const
+{
+    constexpr size_t MOST = 8; /* each may have memory of its own */
+    const size_t most = threads_ < 2 ? 1 : std::min<size_t>(2 * threads_, MOST);
+    return std::clamp<size_t>(count / least, 1, most);
+}
+
+void Task::in_parts(size_t count, size_t parts,
+                    const std::function<void(size_t, size_t, size_t)> &body)
+{
+    if (parts == 1)
+        return body(0, 0, count);
+    parallel(parts, [&](size_t part) {
+        body(part, part * count / parts, (part + 1) * count / parts);
+    }, 0, 0);
+}
+
 void Task::both(const std::function<void()> &first, const std::function<void()> &second)
 {
     parallel(2, [&](size_t which) {

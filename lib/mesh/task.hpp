@@ -90,6 +90,13 @@ public:
     void parallel(size_t count, const std::function<void(size_t)> &body, double from = 0,
                   double to = 1);
 
+    /* In how many parts so many steps are best done, of which fewer than `least` are not worth a
+     * thread: what is done must not depend on it. */
+    size_t parts(size_t count, size_t least) const;
+    /* Runs body(part, from, to) for so many parts of [0, count), as parallel() does. */
+    void in_parts(size_t count, size_t parts,
+                  const std::function<void(size_t, size_t, size_t)> &body);
+
     /* Both at once where there are threads for it, or one after the other; each may use parallel(),
      * and counts its own work. Not for use inside of either. */
     void both(const std::function<void()> &first, const std::function<void()> &second);

@@ -201,17 +201,18 @@ Vector<Relief> turn_frames(const Surface &surface, const Vector<Region> &regions
     Vector<CutTree> trees(regions.size() * TURNS);
     Vector<Relief> reliefs(regions.size());
     for_each_region(regions, task, [&](size_t i) {
-        reliefs[i] = make_relief(surface, regions[i], frames[i], plan.pitch);
-        for (size_t turn = 0; turn < TURNS; ++turn)
-            trees[i * TURNS + turn] =
-                grow_cut_tree(turn_relief(reliefs[i], radians(turn), COARSE), plan, share);
-    }, 0.2, 0.4);
+        reliefs[i] = make_relief(surface, regions[i], frames[i], plan.pitch, task);
+    }, 0.2, 0.3);
+    for_each_region(regions, task, [&](size_t n) {
+        trees[n] = grow_cut_tree(turn_relief(reliefs[n / TURNS], radians(n % TURNS), COARSE),
+                                 plan, share);
+    }, 0.3, 0.4, TURNS);
     Vector<size_t> best = choose_turns(trees, TURNS, plan.patches);
     for_each_region(regions, task, [&](size_t i) {
         if (!trees[i * TURNS + best[i]].nodes[0].divided)
             return;
         frames[i] = turned_frame(surface.mesh, regions[i].triangles, frames[i], radians(best[i]));
-        reliefs[i] = make_relief(surface, regions[i], frames[i], plan.pitch);
+        reliefs[i] = make_relief(surface, regions[i], frames[i], plan.pitch, task);
     });
     return reliefs;
 }

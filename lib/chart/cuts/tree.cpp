@@ -57,9 +57,29 @@ size_t prune_all(Vector<CutTree> &trees, size_t turns, double price,
 
 } // namespace
 
-Relief make_relief(const Surface &surface, const Region &region, const Frame &frame, double pitch)
+/* Adds a triangle with corners in texels. */
+static void add_triangle(const Vec3d corner[3], Relief &out)
 {
-    constexpr size_t TURNS = 64; /* of a short loop, that take as long as a triangle */
+    raster_centres(corner, out.size[0], out.size[1], [&](int i, int j, double depth) {
+        float &height = out.height[out.at(i, j)];
+        if (!(depth <= double(height)))
+            height = float(depth);
+        out.touched[out.at(i, j)] = 1;
+    });
+    for (int k = 0; k < 3; ++k) { /* a sliver passes between centres */
+        Vec3d from = corner[k], along = corner[(k + 1) % 3] - from;
+        int steps = 1 + whole_length(2, along.x, along.y);
+        for (int s = 0; s < steps; ++s) {
+            Vec3d p = from + along * (double(s) / steps);
+            int i = std::clamp(int(p.x), 0, out.size[0] - 1);
+            int j = std::clamp(int(p.y), 0, out.size[1] - 1);
+            out.touched[out.at(i, j)] = 1;
+        }
+    }
+}
+
+static Relief blank_relief(const Frame &frame, double pitch)
+{
     Relief out;
     for (int k = 0; k < 2; ++k) {
         out.size[k] = std::max(1, int(std::ceil(frame.extent[k] / pitch)));
@@ -67,31 +87,38 @@ Relief make_relief(const Surface &surface, const Region &region, const Frame &fr
     }
     out.height.assign(size_t(out.size[0]) * size_t(out.size[1]), NAN);
     out.touched.assign(out.height.size(), 0);
-    FrameInverse inverse(frame);
-    for (uint32_t t : region.triangles) {
-        cancel_point(TURNS);
-        Vec3d corner[3];
-        for (int k = 0; k < 3; ++k) {
-            Vec3d p = inverse(surface.mesh.position(t, k));
-            corner[k] = {(p.x - out.corner[0]) / pitch, (p.y - out.corner[1]) / pitch, p.z / pitch};
-        }
-        raster_centres(corner, out.size[0], out.size[1], [&](int i, int j, double depth) {
-            float &height = out.height[out.at(i, j)];
-            if (!(depth <= double(height)))
-                height = float(depth);
-            out.touched[out.at(i, j)] = 1;
-        });
-        for (int k = 0; k < 3; ++k) { /* a sliver passes between centres */
-            Vec3d from = corner[k], along = corner[(k + 1) % 3] - from;
-            int steps = 1 + whole_length(2, along.x, along.y);
-            for (int s = 0; s < steps; ++s) {
-                Vec3d p = from + along * (double(s) / steps);
-                int i = std::clamp(int(p.x), 0, out.size[0] - 1);
-                int j = std::clamp(int(p.y), 0, out.size[1] - 1);
-                out.touched[out.at(i, j)] = 1;
+    return out;
+}
+
+Relief make_relief(const Surface &surface, const Region &region, const Frame &frame, double pitch,
+                   Task &task)
+{
+    constexpr size_t TURNS = 64; /* of a short loop, that take as long as a triangle */
+    constexpr size_t LARGE = 1 << 16; /* changes no byte */
+    Vector<Relief> parts(task.parts(region.size(), LARGE));
+    const FrameInverse inverse(frame);
+    task.in_parts(region.size(), parts.size(), [&](size_t part, size_t from, size_t to) {
+        Relief out = blank_relief(frame, pitch);
+        for (size_t n = from; n < to; ++n) {
+            cancel_point(TURNS);
+            Vec3d corner[3];
+            for (int k = 0; k < 3; ++k) {
+                Vec3d p = inverse(surface.mesh.position(region.triangles[n], k));
+                corner[k] = {(p.x - out.corner[0]) / pitch, (p.y - out.corner[1]) / pitch,
+                             p.z / pitch};
             }
+            add_triangle(corner, out);
         }
-    }
+        parts[part] = std::move(out);
+    });
+    Relief out = std::move(parts[0]);
+    for (size_t part = 1; part < parts.size(); ++part)
+        for (size_t i = 0; i < out.height.size(); ++i) {
+            const float height = parts[part].height[i];
+            if (!(height <= out.height[i]) && !std::isnan(height))
+                out.height[i] = height;
+            out.touched[i] |= parts[part].touched[i];
+        }
     return out;
 }
 

@@ -20,7 +20,8 @@ struct Relief {
     size_t at(int i, int j) const { return size_t(j) * size_t(size[0]) + size_t(i); }
 };
 
-Relief make_relief(const Surface &surface, const Region &region, const Frame &frame, double pitch);
+Relief make_relief(const Surface &surface, const Region &region, const Frame &frame, double pitch,
+                   Task &task);
 
 /* The same turned about z by `turn` radians, `coarse` times as coarse: what a chart would look
  * like in a turned frame, roughly. Without texels where it would take far more of them: a sliver
