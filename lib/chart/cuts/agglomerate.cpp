@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <numeric>
 #include <queue>
+#include <utility>
 
 namespace gtx {
 
@@ -60,6 +61,8 @@ Clusters single_triangles(const Surface &surface)
 {
     Clusters out;
     out.sums.reserve(surface.whole.size());
+    out.first.reserve(surface.whole.size() + 1);
+    out.touching.reserve(3 * surface.whole.size());
     for (size_t t = 0; t < surface.whole.size(); ++t) {
         const Facet &f = surface.facets[t];
         out.sums.push_back({f.normal * f.size, f.size, f.size});
@@ -105,15 +108,18 @@ Vector<uint32_t> cheapest_partners(const Clusters &clusters, Task &task)
 
 /* Who merges with whom: every two that are each other's cheapest, and where costs rise along a
  * line, so that these are few, whoever is still free. */
-Vector<uint32_t> match(const Vector<uint32_t> &best)
+Vector<uint32_t> match(const Vector<uint32_t> &best, Task &task)
 {
     Vector<uint32_t> partner(best.size(), NO_TRIANGLE);
-    size_t matched = 0;
-    for (uint32_t c = 0; c < best.size(); ++c)
-        if (best[c] != NO_TRIANGLE && best[best[c]] == c) {
-            partner[c] = best[c];
-            ++matched;
-        }
+    Vector<size_t> mutual(task.parts(best.size(), CHUNK), 0);
+    task.in_parts(best.size(), mutual.size(), [&](size_t part, size_t from, size_t to) {
+        for (size_t c = from; c < to; ++c)
+            if (best[c] != NO_TRIANGLE && best[best[c]] == c) {
+                partner[c] = best[c];
+                ++mutual[part];
+            }
+    });
+    const size_t matched = std::accumulate(mutual.begin(), mutual.end(), size_t(0));
     for (uint32_t c = 0; matched < best.size() / 16 && c < best.size(); ++c)
         if (partner[c] == NO_TRIANGLE && best[c] != NO_TRIANGLE &&
             partner[best[c]] == NO_TRIANGLE) {
@@ -123,11 +129,54 @@ Vector<uint32_t> match(const Vector<uint32_t> &best)
     return partner;
 }
 
+/* Clusters from..to - 1 of those that take the place of `members` and their partners. */
+Clusters merge_some(const Clusters &clusters, const Vector<uint32_t> &members,
+                    const Vector<uint32_t> &partner, const Vector<uint32_t> &renamed, size_t from,
+                    size_t to)
+{
+    Clusters out;
+    Vector<uint32_t> listed(members.size(), NO_TRIANGLE);      /* by which cluster, last */
+    out.sums.reserve(to - from);
+    out.first.reserve(to - from);
+    for (size_t c = from; c < to; ++c) {
+        const uint32_t other_half = partner[members[c]];
+        const Sum &own = clusters.sums[members[c]];
+        out.sums.push_back(other_half == NO_TRIANGLE ? own : own + clusters.sums[other_half]);
+        out.first.push_back(uint32_t(out.touching.size()));
+        listed[c] = uint32_t(c);
+        for (uint32_t member : {members[c], other_half}) {
+            if (member == NO_TRIANGLE)
+                continue;
+            for (uint32_t i = clusters.first[member]; i < clusters.first[member + 1]; ++i) {
+                const uint32_t other = renamed[clusters.touching[i]];
+                if (std::exchange(listed[other], uint32_t(c)) != c)
+                    out.touching.push_back(other);
+            }
+        }
+    }
+    return out;
+}
+
+/* One after the other. */
+Clusters joined(Vector<Clusters> &parts)
+{
+    Clusters out = std::move(parts[0]);
+    for (size_t part = 1; part < parts.size(); ++part) {
+        const Clusters more = std::move(parts[part]);
+        const auto before = uint32_t(out.touching.size());
+        out.sums.insert(out.sums.end(), more.sums.begin(), more.sums.end());
+        for (uint32_t first : more.first)
+            out.first.push_back(before + first);
+        out.touching.insert(out.touching.end(), more.touching.begin(), more.touching.end());
+    }
+    out.first.push_back(uint32_t(out.touching.size()));
+    return out;
+}
+
 /* Merges matched pairs. Returns the new cluster of each old one. */
-Vector<uint32_t> merge_pairs(Clusters &clusters, const Vector<uint32_t> &partner)
+Vector<uint32_t> merge_pairs(Clusters &clusters, const Vector<uint32_t> &partner, Task &task)
 {
     Vector<uint32_t> renamed(clusters.size()), members;
-    Clusters out;
     for (uint32_t c = 0; c < clusters.size(); ++c) {
         if (partner[c] < c) {
             renamed[c] = renamed[partner[c]];
@@ -136,29 +185,11 @@ Vector<uint32_t> merge_pairs(Clusters &clusters, const Vector<uint32_t> &partner
         renamed[c] = uint32_t(members.size());
         members.push_back(c);
     }
-    Vector<uint32_t> listed(members.size(), NO_TRIANGLE);      /* by which cluster, last */
-    out.sums.reserve(members.size());
-    out.touching.reserve(clusters.touching.size());
-    for (uint32_t c = 0; c < members.size(); ++c) {
-        const Sum &own = clusters.sums[members[c]];
-        uint32_t other_half = partner[members[c]];
-        out.sums.push_back(other_half == NO_TRIANGLE ? own : own + clusters.sums[other_half]);
-        out.first.push_back(uint32_t(out.touching.size()));
-        listed[c] = c;
-        for (uint32_t member : {members[c], other_half}) {
-            if (member == NO_TRIANGLE)
-                continue;
-            for (uint32_t i = clusters.first[member]; i < clusters.first[member + 1]; ++i) {
-                uint32_t other = renamed[clusters.touching[i]];
-                if (listed[other] == c)
-                    continue;
-                listed[other] = c;
-                out.touching.push_back(other);
-            }
-        }
-    }
-    out.first.push_back(uint32_t(out.touching.size()));
-    clusters = std::move(out);
+    Vector<Clusters> parts(task.parts(members.size(), CHUNK));
+    task.in_parts(members.size(), parts.size(), [&](size_t part, size_t from, size_t to) {
+        parts[part] = merge_some(clusters, members, partner, renamed, from, to);
+    });
+    clusters = joined(parts);
     return renamed;
 }
 
@@ -296,13 +327,16 @@ Vector<uint32_t> agglomerate(const Surface &surface, uint32_t &count, Task &task
 {
     Clusters clusters = single_triangles(surface);
     Vector<uint32_t> labels = surface.whole.triangles;
-    auto rename = [&labels](const Vector<uint32_t> &renamed) {
-        for (uint32_t &label : labels)
-            label = renamed[label];
+    auto rename = [&](const Vector<uint32_t> &renamed) {
+        task.in_parts(labels.size(), task.parts(labels.size(), CHUNK),
+                      [&](size_t, size_t from, size_t to) {
+            for (size_t t = from; t < to; ++t)
+                labels[t] = renamed[labels[t]];
+        });
     };
     for (size_t before = SIZE_MAX; clusters.size() > QUEUED_CLUSTERS && clusters.size() < before;) {
         before = clusters.size();
-        rename(merge_pairs(clusters, match(cheapest_partners(clusters, task))));
+        rename(merge_pairs(clusters, match(cheapest_partners(clusters, task), task), task));
         task.advance(0.4 * (1 - double(clusters.size()) / double(labels.size())));
     }
     rename(MergeQueue(clusters).run());

@@ -16,18 +16,43 @@ constexpr int REFITS = 10, SWEEPS = 3;
 constexpr int STRAIGHT_REFITS = 3;
 constexpr float STRAIGHTNESS = 0.3f;
 
+/* Triangles that a thread looks at, at least; changes no byte. */
+constexpr size_t CHUNK = 1 << 14;
+
 /* The triangles with a neighbour of another label. */
-Vector<uint32_t> border_of(const Surface &surface, const Vector<uint32_t> &labels)
+Vector<uint32_t> border_of(const Surface &surface, const Vector<uint32_t> &labels, Task &task)
 {
-    Vector<uint32_t> border;
-    for (uint32_t t = 0; t < labels.size(); ++t) {
-        const auto &around = surface.whole.neighbours[t];
-        if (std::any_of(around.begin(), around.end(), [&](uint32_t n) {
-                return n != NO_TRIANGLE && labels[n] != labels[t];
-            }))
-            border.push_back(t);
-    }
-    return border;
+    Vector<Vector<uint32_t>> parts(task.parts(labels.size(), CHUNK));
+    task.in_parts(labels.size(), parts.size(), [&](size_t part, size_t from, size_t to) {
+        for (size_t t = from; t < to; ++t) {
+            const auto &around = surface.whole.neighbours[t];
+            if (std::any_of(around.begin(), around.end(), [&](uint32_t n) {
+                    return n != NO_TRIANGLE && labels[n] != labels[t];
+                }))
+                parts[part].push_back(uint32_t(t));
+        }
+    });
+    for (size_t part = 1; part < parts.size(); ++part)
+        parts[0].insert(parts[0].end(), parts[part].begin(), parts[part].end());
+    return std::move(parts[0]);
+}
+
+/* The normal of each cluster: each is summed up by one thread, in the order of its triangles. */
+Vector<Vec3f> fit_normals(const Surface &surface, const Vector<uint32_t> &labels, size_t count,
+                          Task &task)
+{
+    Vector<Vec3f> proxies(count);
+    const size_t parts = std::min(task.parts(labels.size(), CHUNK), count);
+    task.in_parts(count, parts, [&](size_t, size_t from, size_t to) {
+        Vector<Vec3d> sums(to - from);
+        for (size_t t = 0; t < labels.size(); ++t)
+            if (labels[t] - from < to - from)
+                sums[labels[t] - from] +=
+                    Vec3d(surface.facets[t].normal) * double(surface.facets[t].size);
+        for (size_t c = from; c < to; ++c)
+            proxies[c] = Vec3f(normalize(sums[c - from]));
+    });
+    return proxies;
 }
 
 } // namespace
@@ -36,13 +61,8 @@ void move_borders(const Surface &surface, size_t count, Vector<uint32_t> &labels
 {
     const auto &neighbours = surface.whole.neighbours;
     for (int refit = 0; refit < REFITS; ++refit) {
-        Vector<Vec3d> sums(count);
-        for (size_t t = 0; t < labels.size(); ++t)
-            sums[labels[t]] += Vec3d(surface.facets[t].normal) * double(surface.facets[t].size);
-        Vector<Vec3f> proxies(count);
-        for (size_t c = 0; c < count; ++c)
-            proxies[c] = Vec3f(normalize(sums[c]));
-        Vector<uint32_t> border = border_of(surface, labels);
+        const Vector<Vec3f> proxies = fit_normals(surface, labels, count, task);
+        Vector<uint32_t> border = border_of(surface, labels, task);
         const float straightness = refit < REFITS - STRAIGHT_REFITS ? 0 : STRAIGHTNESS;
         auto liking = [&](uint32_t t, uint32_t label) {
             int alike = 0;
