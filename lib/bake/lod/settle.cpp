@@ -96,7 +96,6 @@ void Simplifier::State::keep_points()
  * sight would pass where it must not. */
 void Simplifier::State::settle()
 {
-    find_around();
     for (uint32_t v = 0; v < positions.size(); ++v) {
         move(v, quadrics[v].way_down(positions[v], STAY));
         error = std::max(error, quadrics[v].at(positions[v]));

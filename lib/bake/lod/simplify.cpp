@@ -54,13 +54,13 @@ void Simplifier::State::sort_by_patch(const LodSource &source)
     }
 }
 
-void Simplifier::State::find_around()
+void Simplifier::State::find_around(size_t vertices)
 {
-    start.assign(positions.size() + 1, 0);
+    start.assign(vertices + 1, 0);
     for (const Triangle &t : triangles)
         for (uint32_t v : t)
             ++start[v + 1];
-    for (size_t v = 0; v < positions.size(); ++v)
+    for (size_t v = 0; v < vertices; ++v)
         start[v + 1] += start[v];
     around.resize(3 * triangles.size());
     Vector<uint32_t> next(start.begin(), start.end() - 1);
@@ -99,43 +99,50 @@ size_t Simplifier::State::collapse(const Fan &fan, uint32_t from, uint32_t to, d
     return count;
 }
 
-/* Takes out what is gone: triangles, and the vertices that none has. */
+/* Takes out what is gone: triangles, and the vertices that none has. The largest jobs are first. */
 void Simplifier::State::compact()
 {
-    size_t count = 0;
     Vector<uint32_t> renamed(positions.size(), NO_VERTEX);
-    for (size_t t = 0; t < triangles.size(); ++t) {
-        if (triangles[t][0] == NO_VERTEX)
-            continue;
-        triangles[count] = triangles[t];
-        patch[count++] = patch[t];
-        for (uint32_t v : triangles[t])
-            renamed[v] = 0;
-    }
-    triangles.resize(count);
-    patch.resize(count);
+    for (const Triangle &t : triangles)
+        for (size_t k = 0; k < 3 && t[0] != NO_VERTEX; ++k)
+            renamed[t[k]] = 0;
     uint32_t vertices = 0;
-    for (size_t v = 0; v < positions.size(); ++v) {
-        if (renamed[v] == NO_VERTEX)
-            continue;
-        positions[vertices] = positions[v];
-        if (!kept.empty())
-            kept[vertices] = kept[v];
-        quadrics[vertices] = quadrics[v];
-        point[vertices] = point[v];
-        choices[vertices] = choices[v];
-        renamed[v] = vertices++;
-    }
-    positions.resize(vertices);
-    kept.resize(kept.empty() ? 0 : vertices);
-    quadrics.resize(vertices);
-    point.resize(vertices);
-    choices.resize(vertices);
-    for (Choice &c : choices)
-        c.to = c.to == NO_VERTEX ? NO_VERTEX : renamed[c.to];
-    for (Triangle &t : triangles)
-        for (uint32_t &v : t)
-            v = renamed[v];
+    for (uint32_t &name : renamed)
+        name = name == NO_VERTEX ? NO_VERTEX : vertices++;
+    const auto keep = [&](auto &items) {
+        for (size_t v = 0; v < items.size(); ++v)
+            if (renamed[v] != NO_VERTEX)
+                items[renamed[v]] = items[v];
+        items.resize(items.empty() ? 0 : vertices);
+    };
+    const std::function<void()> jobs[] = {
+        [&] {
+            size_t count = 0;
+            for (size_t t = 0; t < triangles.size(); ++t) {
+                if (triangles[t][0] == NO_VERTEX)
+                    continue;
+                for (size_t k = 0; k < 3; ++k)
+                    triangles[count][k] = renamed[triangles[t][k]];
+                patch[count++] = patch[t];
+            }
+            triangles.resize(count);
+            patch.resize(count);
+            find_around(vertices);
+        },
+        [&] { keep(quadrics); },
+        [&] {
+            keep(positions);
+            keep(kept);
+            keep(point);
+            keep(choices);
+            for (Choice &c : choices)
+                c.to = c.to == NO_VERTEX ? NO_VERTEX : renamed[c.to];
+        }};
+    const bool few = renamed.size() < BLOCK; /* threads take longer to start */
+    task.in_parts(std::size(jobs), few ? 1 : std::size(jobs), [&](size_t, size_t from, size_t to) {
+        for (size_t n = from; n < to; ++n)
+            jobs[n]();
+    });
 }
 
 /* Whether what merging it changes lies in the block. */
@@ -167,7 +174,6 @@ size_t Simplifier::State::merge(uint32_t vertex, float limit, double most)
  * those inside a block on a thread each, then those between blocks. Returns how many. */
 size_t Simplifier::State::round(size_t wanted, double free, double most)
 {
-    find_around();
     find_costs(most);
     const float limit = find_limit(free);
     const size_t blocks = (positions.size() + BLOCK - 1) / BLOCK, before = positions.size();
@@ -210,7 +216,7 @@ Simplifier::Simplifier(const LodSource &source, const Vector<PatchRegion> &regio
                        Task &task)
 {
     state_ = std::make_unique<State>(source, regions, task);
-    state_->find_around();
+    state_->find_around(state_->positions.size());
     state_->quadrics = vertex_quadrics(state_->positions, state_->triangles, state_->start,
                                        state_->around, task);
 }
@@ -254,6 +260,7 @@ void Simplifier::drop(const Vector<uint8_t> &dropped)
     }
     state_->triangles.resize(left);
     state_->patch.resize(left);
+    state_->find_around(state_->positions.size());
 }
 
 const Vector<Vec3d> &Simplifier::positions() const

@@ -43,7 +43,7 @@ struct Simplifier::State {
     Vector<Vec3d> points;        /* of the surface, that vertices stand for */
     Vector<uint32_t> point;          /* of each vertex, the one that it was */
     Vector<uint32_t> merged;         /* of each point, what it went into; itself: it is left */
-    Vector<uint32_t> start, around;      /* triangles of each vertex */
+    Vector<uint32_t> start, around;      /* triangles of each vertex, between two rounds */
     Vector<uint8_t> touched;
     /* Of each vertex the cheapest, as far as is known: NAN where it has to be found out, infinite
      * where it must stay unless something changes around it. */
@@ -57,7 +57,7 @@ struct Simplifier::State {
 
     State(const LodSource &source, const Vector<PatchRegion> &regions, Task &task);
     void sort_by_patch(const LodSource &source);
-    void find_around();
+    void find_around(size_t vertices);
     bool find_fan(uint32_t vertex, Fan &fan) const
     {
         return baking::find_fan(triangles, around.data() + start[vertex],
