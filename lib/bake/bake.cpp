@@ -5,6 +5,7 @@
 #include "bake/seam/seam.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 namespace gtx::baking {
 
@@ -164,6 +165,17 @@ static void check(const Mesh &mesh, const Partition &partition, const BakeOption
         throw Error(GTX_ERROR_ARGUMENT, "height bits, mips or dilation out of range");
 }
 
+/* The charts from one on: a large one that begins last is waited for. */
+static Vector<size_t> largest_first(const Vector<Chart> &charts, size_t first)
+{
+    Vector<size_t> order(charts.size() - first);
+    std::iota(order.begin(), order.end(), first);
+    std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) {
+        return charts[a].triangles.size() > charts[b].triangles.size();
+    });
+    return order;
+}
+
 } // namespace gtx::baking
 
 namespace gtx {
@@ -181,8 +193,9 @@ Maps bake(const Mesh &mesh, Partition &partition, const BakeOptions &options, Ta
     auto bake_rest = [&](double from, double to) {
         const size_t done = patches.size();
         patches.resize(partition.charts.size());
-        task.parallel(patches.size() - done, [&](size_t i) {
-            patches[done + i] = bake_chart(job, partition.charts[done + i]);
+        const Vector<size_t> order = largest_first(partition.charts, done);
+        task.parallel(order.size(), [&](size_t n) {
+            patches[order[n]] = bake_chart(job, partition.charts[order[n]]);
         }, from, to);
     };
     bake_rest(0, 0.9);
