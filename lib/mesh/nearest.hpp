@@ -156,11 +156,13 @@ private:
     template <class Skips, class Visit>
     void visit_below(size_t root, const Skips &skips, const Visit &visit) const
     {
-        size_t stack[64], size = 0;
+        constexpr size_t MANY = 64; /* nodes for a cancellation point */
+        size_t stack[64], size = 0, nodes = 0;
         stack[size++] = root;
         while (size) {
             const size_t node = stack[--size];
-            cancel_point();
+            if (++nodes % MANY == 0)
+                cancel_point(LOOK_TURNS * MANY);
             if (skips(boxes_[node]))
                 continue;
             if (node < leaves_) {
@@ -172,6 +174,7 @@ private:
             for (size_t i = from; i < std::min(from + LEAF, order_.size()); ++i)
                 visit(order_[i]);
         }
+        cancel_point(LOOK_TURNS * (nodes % MANY));
     }
 
     template <class Counts>
