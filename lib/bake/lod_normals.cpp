@@ -163,33 +163,40 @@ struct Fit {
             n = normalize(n);
     }
 
-    void step()
+    /* Returns the error before. */
+    double step()
     {
         Vector<Vec3d> change(level.vertex_count);
         Vector<double> weights(level.vertex_count);
-        each_texel([&](double weight, const uint32_t *vertex, const double *share, const Vec3d &is,
-                       const Vec3d &seems) {
+        const double before = error([&](double weight, const uint32_t *vertex, const double *share,
+                                        const Vec3d &apart) {
             for (int k = 0; k < 3; ++k) {
-                change[vertex[k]] += (is - seems) * (weight * share[k]);
+                change[vertex[k]] += apart * (weight * share[k]);
                 weights[vertex[k]] += weight * share[k];
             }
         });
         for (size_t v = 0; v < normals.size(); ++v)
             if (weights[v] > 0)
                 normals[v] = normalize(normals[v] + change[v] / weights[v]);
+        return before;
     }
 
-    /* 2 where no texel tells. */
-    double error() const
+    /* 2 where no texel tells. Calls each(weight, vertices, shares, what the map has more). */
+    template <class Each> double error(Each &&each) const
     {
         double sum = 0, area = 0;
-        each_texel([&](double weight, const uint32_t *, const double *, const Vec3d &is,
+        each_texel([&](double weight, const uint32_t *vertex, const double *share, const Vec3d &is,
                        const Vec3d &seems) {
             const Vec3d apart = is - seems;
             sum += weight * dot(apart, apart);
             area += weight;
+            each(weight, vertex, share, apart);
         });
         return area > 0 ? std::sqrt(sum / area) : 2;
+    }
+    double error() const
+    {
+        return error([](double, const uint32_t *, const double *, const Vec3d &) {});
     }
 
     Vector<uint8_t> coded() const
@@ -228,9 +235,9 @@ LodNormals lod_normals(const gtx_lod_mesh &level, const NormalMaps &maps)
         return out;
     Fit fit{level, maps, {}};
     fit.begin();
-    if (!(fit.error() <= 2 * MAX_ERROR)) /* fitting takes a fourth off */
+    if (!(fit.step() <= 2 * MAX_ERROR)) /* fitting takes a fourth off */
         return out;
-    for (int i = 0; i < FITS; ++i)
+    for (int i = 1; i < FITS; ++i)
         fit.step();
     Vector<uint8_t> codes = fit.coded();
     for (size_t v = 0; v < level.vertex_count; ++v) {
@@ -246,6 +253,16 @@ LodNormals lod_normals(const gtx_lod_mesh &level, const NormalMaps &maps)
     return out;
 }
 
+bool put_lod_normals(const LodNormals &normals, gtx_lod_mesh &level)
+{
+    if (normals.codes.empty())
+        return false;
+    level.flags |= GTX_LOD_NORMALS;
+    level.normals = normals.codes.data();
+    level.normal_error = normals.error;
+    return true;
+}
+
 void add_lod_normals(Vector<gtx_lod_mesh> &levels, const NormalMaps &maps, Vector<LodNormals> &out,
                      Task &task)
 {
@@ -256,11 +273,8 @@ void add_lod_normals(Vector<gtx_lod_mesh> &levels, const NormalMaps &maps, Vecto
             task.parallel(std::min(AT_ONCE, levels.size() - k), [&](size_t i) {
                 out[k + i] = lod_normals(levels[k + i], maps);
             }, 0, 0);
-        if (out[k].codes.empty())
+        if (!put_lod_normals(out[k], levels[k]))
             return;
-        levels[k].flags |= GTX_LOD_NORMALS;
-        levels[k].normals = out[k].codes.data();
-        levels[k].normal_error = out[k].error;
     }
 }
 

@@ -23,7 +23,11 @@ struct LodNormals {
  * Deterministic. */
 LodNormals lod_normals(const gtx_lod_mesh &level, const NormalMaps &maps);
 
-/* Puts them into levels, the finest first, up to the first that has none; `out` holds them. */
+/* Puts them into the level, which is used with them; false where there are none. */
+bool put_lod_normals(const LodNormals &normals, gtx_lod_mesh &level);
+
+/* Makes and puts them into levels, the finest first, up to the first that has none; `out` holds
+ * them. */
 void add_lod_normals(Vector<gtx_lod_mesh> &levels, const NormalMaps &maps, Vector<LodNormals> &out,
                      Task &task);
 

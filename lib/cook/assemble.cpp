@@ -22,20 +22,17 @@ static Vector<const uint8_t *> level_pointers(const Vector<Vector<uint8_t>> &lev
     return pointers;
 }
 
-Asset assemble(const Maps &maps, const Vector<LodLevel> &lod, const AssetFacts &facts, Task &task)
+Asset assemble(const Maps &maps, const Vector<LodLevel> &lod, const AssetFacts &facts)
 {
     const Vector<const uint8_t *> normal = level_pointers(maps.normal),
                                        color = level_pointers(maps.color),
                                        material = level_pointers(maps.material),
                                        emission = level_pointers(maps.emission);
     Vector<gtx_lod_mesh> levels;
-    for (const LodLevel &level : lod)
+    for (const LodLevel &level : lod) {
         levels.push_back(level.mesh());
-    const NormalMaps shown = {maps.patches.data(), uint32_t(maps.patches.size()), maps.page_width,
-                              maps.page_height, maps.height_bits, maps.height.data(),
-                              maps.normal[0].data()};
-    Vector<LodNormals> lit;
-    add_lod_normals(levels, shown, lit, task);
+        put_lod_normals(level.normals, levels.back());
+    }
 
     gtx_asset_desc desc = {};
     desc.patches = maps.patches.data();
@@ -146,7 +143,7 @@ static Asset with_lod(const gtx_asset *asset, const gtx_lod_desc &desc)
     const AssetFacts facts = {meta ? std::string(meta, size) : std::string(), info.unit,
                               info.source_triangles, gtx_allocator_or_default(desc.allocator)};
     return assemble(maps, make_lod(source, maps, desc.levels ? desc.levels : MAX_LOD_LEVELS,
-                                   task), facts, task);
+                                   task), facts);
 }
 
 } // namespace gtx

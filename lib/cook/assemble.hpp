@@ -19,6 +19,6 @@ struct AssetFacts {
 };
 
 /* Throws Error: what gtx_create reports. */
-Asset assemble(const Maps &maps, const Vector<LodLevel> &lod, const AssetFacts &facts, Task &task);
+Asset assemble(const Maps &maps, const Vector<LodLevel> &lod, const AssetFacts &facts);
 
 } // namespace gtx

@@ -89,7 +89,7 @@ static Attempt finish(const Mesh &mesh, Partition partition, const Options &opti
                 of_asset.warnings.set(warning.kind);
         out.bake = maps.report;
         out.asset = assemble(maps, lod, {write_meta(options, of_asset), options.unit,
-                                         facts.source_triangles, options.allocator}, task);
+                                         facts.source_triangles, options.allocator});
     }
     if (options.measure) {
         task.begin("measure");

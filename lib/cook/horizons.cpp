@@ -240,7 +240,7 @@ static Asset make_horizons(const gtx_height_grid *grids, uint32_t count,
     const gtx_allocator allocator = gtx_allocator_or_default(desc.allocator);
     Asset asset = assemble(maps, levels, {meta_of(desc, surfaces, range, allocator),
                                           desc.unit > 0 ? desc.unit : 1, report.triangles,
-                                          allocator}, task);
+                                          allocator});
     if (result) {
         *result = {};
         result->nodes = report.nodes;

@@ -242,7 +242,8 @@ double LevelBound::after(const Spots &spots, const Vector<Corners> &changed)
         boxes.push_back(
             box_around(mesh_.corners(mesh_.triangles[p.near], lattice_), spots.most));
     }
-    level_ = std::make_unique<LevelSurface>(mesh_, lattice_, task_);
+    if (!changed.empty())
+        level_ = std::make_unique<LevelSurface>(mesh_, lattice_, task_);
     const auto any = [](uint32_t) { return true; };
     const auto shown = [&](uint32_t t) { return is_shown(t); };
     FarSearch there = {level_->surface, spots.most, 0};

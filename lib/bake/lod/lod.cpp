@@ -88,43 +88,59 @@ struct MadeLevel {
     float error = 0, rms = 0;
 };
 
-/* Levels on their way from who makes them to who finds their errors, both at once: either has one
- * thread for much of its time. */
+/* Levels on their way from who makes them to who finds their errors and to who stores them, all at
+ * once: each has one thread for much of its time. */
 class Line {
 public:
+    enum Step { MADE, BOUNDED, STEPS };
+
     void add(MadeLevel &&level)
     {
         std::lock_guard<std::mutex> lock(mutex_);
         levels_.push_back(std::move(level));
-        changed_.notify_one();
+        ++through_[MADE];
+        changed_.notify_all();
     }
-    /* No more are to come. */
-    void end()
+    /* The next has its error. */
+    void pass()
     {
         std::lock_guard<std::mutex> lock(mutex_);
-        ended_ = true;
-        changed_.notify_one();
+        ++through_[BOUNDED];
+        changed_.notify_all();
     }
-    /* Waits for a level; null where there are no more. */
-    MadeLevel *at(size_t k, Task &task)
+    /* No more are to come. */
+    void end(Step step)
+    {
+        std::lock_guard<std::mutex> lock(mutex_);
+        ended_[step] = true;
+        changed_.notify_all();
+    }
+    /* Waits for a level that is through a step; null where there are no more. */
+    MadeLevel *at(size_t k, Step step, Task &task)
     {
         const std::chrono::milliseconds wait(10);
         std::unique_lock<std::mutex> lock(mutex_);
-        while (!changed_.wait_for(lock, wait, [&] { return ended_ || k < levels_.size(); })) {
+        while (!changed_.wait_for(lock, wait, [&] { return ended_[step] || k < through_[step]; })) {
             lock.unlock();
             task.advance(0); /* which may throw */
             lock.lock();
         }
-        return k < levels_.size() ? &levels_[k] : nullptr;
+        return k < through_[step] ? &levels_[k] : nullptr;
     }
-    /* All, once they are made. */
-    std::deque<MadeLevel> &all() { return levels_; }
 
 private:
     std::mutex mutex_;
     std::condition_variable changed_;
     std::deque<MadeLevel> levels_;
-    bool ended_ = false;
+    size_t through_[STEPS] = {};
+    bool ended_[STEPS] = {};
+};
+
+/* Ends a step however it ends. */
+struct End {
+    Line &line;
+    Line::Step step;
+    ~End() { line.end(step); }
 };
 
 /* Gives vertices to the few spots that a level is far from, which would set its error, and says how
@@ -146,15 +162,17 @@ static Strayed mend(const LodJob &job, LevelBound &bound, LevelMesh &mesh)
  * misses. */
 static void find_errors(const LodJob &job, Line &line)
 {
+    const End end = {line, Line::BOUNDED};
     const BoundSource source(job.source, job.task);
     Vector<BoundedLevel> finer;
     float told = 0;
-    for (size_t k = 0; MadeLevel *level = line.at(k, job.task); ++k) {
+    for (size_t k = 0; MadeLevel *level = line.at(k, Line::MADE, job.task); ++k) {
         LevelBound bound(source, level->mesh, job.lattice, level->speck, finer, job.task);
         const Strayed strayed = level->far ? bound.whole() : mend(job, bound, level->mesh);
         const float most = float(std::max(strayed.most, level->speck));
         level->error = told = std::max(told, std::nextafter(most, INFINITY));
         level->rms = float(strayed.rms);
+        line.pass();
         finer.push_back(std::move(bound).bounded(strayed.most));
     }
 }
@@ -197,6 +215,7 @@ static void make_far_levels(const LodJob &job, Simplifier &simplifier, Line &lin
 /* At most `count` that keep to their patches, and far ones. */
 static void make_levels(const LodJob &job, unsigned count, Line &line)
 {
+    const End end = {line, Line::MADE};
     const Maps &maps = job.maps;
     Simplifier simplifier(job.source, job.regions, job.task);
     const size_t model = job.source.model ? job.source.model : job.source.triangles.size();
@@ -221,18 +240,24 @@ static void make_levels(const LodJob &job, unsigned count, Line &line)
     make_far_levels(job, simplifier, line);
 }
 
-/* At once, for each has one thread. */
-static Vector<LodLevel> stored(const LodJob &job, const std::deque<MadeLevel> &levels)
+/* As the asset keeps them; vertices have normals up to the first level without. */
+static void store_levels(const LodJob &job, Line &line, Vector<LodLevel> &lod)
 {
-    Vector<LodLevel> lod(levels.size());
-    job.task.parallel(lod.size(), [&](size_t k) {
-        const MadeLevel &made = levels[k];
-        lod[k] = stored(made.mesh, job.regions.size(), job.lattice);
-        lod[k].error = made.error;
-        lod[k].rms = made.rms;
-        lod[k].far = made.far;
-    }, 1, 1);
-    return lod;
+    const Maps &maps = job.maps;
+    const NormalMaps shown = {maps.patches.data(), uint32_t(maps.patches.size()), maps.page_width,
+                              maps.page_height, maps.height_bits, maps.height.data(),
+                              maps.normal[0].data()};
+    bool lit = true;
+    for (size_t k = 0; const MadeLevel *made = line.at(k, Line::BOUNDED, job.task); ++k) {
+        lod.push_back(stored(made->mesh, job.regions.size(), job.lattice));
+        LodLevel &level = lod.back();
+        level.error = made->error;
+        level.rms = made->rms;
+        level.far = made->far;
+        if (lit)
+            level.normals = lod_normals(level.mesh(), shown);
+        lit = !level.normals.codes.empty();
+    }
 }
 
 } // namespace gtx::baking
@@ -255,16 +280,14 @@ Vector<LodLevel> make_lod(const LodSource &source, const Maps &maps, unsigned le
         size[k] = double(maps.bounds_max[k]) - maps.bounds_min[k];
     const LodJob job = {source, maps, regions, lattice, pitch, length(size), task};
     Line line;
-    task.both(
-        [&] {
-            struct End {
-                Line &line;
-                ~End() { line.end(); }
-            } end = {line};
-            make_levels(job, levels, line);
-        },
-        [&] { find_errors(job, line); });
-    return stored(job, line.all());
+    Vector<LodLevel> lod;
+    task.both([&] { make_levels(job, levels, line); },
+              [&] {
+                  task.parallel(2, [&](size_t which) {
+                      which ? store_levels(job, line, lod) : find_errors(job, line);
+                  }, 0, 0);
+              });
+    return lod;
 }
 
 } // namespace gtx

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "bake/bake.hpp"
+#include "bake/lod_normals.hpp"
 
 #include <algorithm>
 
@@ -33,9 +34,10 @@ struct LodLevel {
     Vector<uint32_t> first;          /* of each patch, and the end */
     Vector<uint32_t> indices;        /* 3 a triangle */
     Vector<uint16_t> positions;      /* 3 a vertex */
+    LodNormals normals;
 
     size_t triangle_count() const { return indices.size() / 3; }
-    /* As gtx_create takes it; of the level's arrays, which must stay. */
+    /* As gtx_create takes it, without normals; of the level's arrays, which must stay. */
     gtx_lod_mesh mesh() const
     {
         gtx_lod_mesh out = {};
