@@ -186,7 +186,8 @@ Maps bake(const Mesh &mesh, Partition &partition, const BakeOptions &options, Ta
 {
     check(mesh, partition, options);
     task.begin("bake");
-    Neighbours neighbours = triangle_neighbours(mesh);
+    const bool known = !partition.neighbours.empty();
+    Neighbours neighbours = known ? std::move(partition.neighbours) : triangle_neighbours(mesh);
     Job job = {mesh,            neighbours,      options, appearance_needs(mesh),
                partition.pitch, anchor_of(mesh), partition.charts.size(), partition.for_outlines};
     Vector<PatchMaps> patches;

@@ -103,6 +103,8 @@ struct Partition {
     double more_texels = 1;              /* with what textures ask for, about; of relief's */
     Vector<uint32_t> initial_chart;      /* per triangle, before splitting */
     Vector<uint8_t> junk;                /* per triangle: 1 = junk */
+    /* triangle_neighbours() of charted(), or empty: not known. */
+    Vector<std::array<uint32_t, 3>> neighbours;
     ChartReport report;
 
     const Mesh &charted(const Mesh &source_mesh) const;

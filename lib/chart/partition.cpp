@@ -60,6 +60,14 @@ void merge_all(const Surface &surface, Vector<Region> &regions, Vector<Frame> &f
     frames.insert(frames.end(), loose_frames.begin(), loose_frames.end());
 }
 
+/* A region has them from the last edge on. */
+Vector<std::array<uint32_t, 3>> from_first_edges(Vector<std::array<uint32_t, 3>> neighbours)
+{
+    for (std::array<uint32_t, 3> &own : neighbours)
+        own = {own[1], own[2], own[0]};
+    return neighbours;
+}
+
 /* Whether more of it has two sides than the small islands that a scan has everywhere. */
 bool is_two_sided(const Mesh &mesh, const Chart &chart)
 {
@@ -107,6 +115,8 @@ void make_charts(Surface surface, const ChartOptions &options, uint32_t count, T
     task.begin("frame");
     if (cut)
         merge_all(surface, regions, frames, bounds, task);
+    if (surface.manifold)
+        out.neighbours = from_first_edges(std::move(surface.whole.neighbours));
     surface.whole.neighbours = {};
     attach_islands(surface, bounds, regions, frames);
     const unsigned side = std::max(options.resolution / options.grain, 1u) * options.grain;

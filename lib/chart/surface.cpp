@@ -91,10 +91,11 @@ bool find_neighbours(const Mesh &mesh, Vector<std::array<uint32_t, 3>> &out)
     return manifold;
 }
 
-Vector<std::array<uint32_t, 3>> neighbours_of(const Mesh &mesh)
+Vector<std::array<uint32_t, 3>> neighbours_of(const Mesh &mesh, bool &manifold)
 {
     Vector<std::array<uint32_t, 3>> neighbours;
-    if (find_neighbours(mesh, neighbours))
+    manifold = find_neighbours(mesh, neighbours);
+    if (manifold)
         return neighbours;
     Connectivity connectivity = connect(mesh);
     Vector<std::array<uint32_t, 3>> out(mesh.triangle_count());
@@ -144,7 +145,7 @@ void connect_whole(Surface &surface)
 {
     surface.whole.triangles.resize(surface.mesh.triangle_count());
     std::iota(surface.whole.triangles.begin(), surface.whole.triangles.end(), 0u);
-    surface.whole.neighbours = neighbours_of(surface.mesh);
+    surface.whole.neighbours = neighbours_of(surface.mesh, surface.manifold);
 }
 
 void measure_facets(Surface &surface, double pitch)
@@ -197,7 +198,7 @@ double texels_of(const Surface &surface, const Region &region, double pitch)
 
 Surface make_surface(const Mesh &mesh, double pitch, Task &task)
 {
-    Surface surface = {mesh, {}, area_of(mesh), 0, {}, {}, {}};
+    Surface surface = {mesh, {}, area_of(mesh), 0, {}, {}, {}, false};
     task.parallel(2, [&](size_t half) {
         if (half == 0)
             connect_whole(surface);

@@ -29,6 +29,7 @@ struct Surface {
     Vector<Facet> facets;
     Vector<Vec3f> normal;      /* unit, raw */
     Vector<uint8_t> junk;      /* 1: scan noise, small and twisted against its neighbours */
+    bool manifold = false;     /* all that share an edge are neighbours */
 };
 
 /* Texels: what is smaller may be a scan's junk, a triangle that turns far from those around it or a
