@@ -114,10 +114,10 @@ Vector<uint32_t> match(const Vector<uint32_t> &best, Task &task)
     Vector<size_t> mutual(task.parts(best.size(), CHUNK), 0);
     task.in_parts(best.size(), mutual.size(), [&](size_t part, size_t from, size_t to) {
         for (size_t c = from; c < to; ++c)
-            if (best[c] != NO_TRIANGLE && best[best[c]] == c) {
+            if (best[c] != NO_TRIANGLE && best[best[c]] == c)
                 partner[c] = best[c];
-                ++mutual[part];
-            }
+        const uint32_t *own = partner.data();
+        mutual[part] = to - from - size_t(std::count(own + from, own + to, NO_TRIANGLE));
     });
     const size_t matched = std::accumulate(mutual.begin(), mutual.end(), size_t(0));
     for (uint32_t c = 0; matched < best.size() / 16 && c < best.size(); ++c)
