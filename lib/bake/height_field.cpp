@@ -25,6 +25,7 @@ void HeightField::decode(const gtx_patch &r, unsigned height_bits)
     const float *from[3] = {r.axis_x, r.axis_y, r.axis_z};
     w = r.rect[2];
     h = r.rect[3];
+    two_sided = r.flags & GTX_PATCH_TWO_SIDED;
     for (int k = 0; k < 3; ++k)
         axis[k] = loaded(from[k]);
     origin = loaded(r.origin);

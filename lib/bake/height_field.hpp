@@ -45,6 +45,7 @@ public:
     double pitch[2], step;       /* of a texel, and of a code */
     Box box;                     /* around all that its codes can reach */
     int w, h;
+    bool two_sided;
 
     /* The maps stay where they are, but may change. */
     HeightField(const PatchMaps &patch, unsigned height_bits);
@@ -72,6 +73,13 @@ public:
     }
     double height(double code) const { return (code - 1) * step; }
     double texel() const { return std::max(pitch[0], pitch[1]); }
+    /* How much a surface of this normal faces the axis: either way, of one that shows on both
+     * sides. */
+    double facing(const Vec3d &normal) const
+    {
+        const double cosine = dot(normal, axis[2]);
+        return two_sided ? std::abs(cosine) : cosine;
+    }
     /* Texels along an axis to a point. */
     double across(int k, const Vec3d &from_origin) const
     {

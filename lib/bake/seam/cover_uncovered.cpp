@@ -17,6 +17,9 @@ namespace gtx::baking {
 /* Square texels of surface that are worth a patch: less is hardly a pixel. Spot's control mesh: 2 %
  * fewer patches at double. */
 constexpr double MIN_AREA = 0.05;
+/* And of a component of the source that fits one patch: a smaller one is dust. A tile of
+ * cesium_143_draco has 30 hole pixels for 2 where all of these are. */
+constexpr double DUST = 1;
 /* Texels of surface around it that its patch shows too, and how far the normals of one patch may
  * differ; below 1 % at half and at double. */
 constexpr double RING = 1.25, MIN_COSINE = 0.5;
@@ -34,8 +37,8 @@ public:
     {
     }
 
-    /* From this one on; the uncovered area of the chart, none where that is all of its component:
-     * dust that was never anyone's surface. */
+    /* From this one on; the uncovered area of the chart, none where that is all of its component,
+     * and dust. */
     Chart gather(size_t first, double &area);
     bool taken(size_t i) const { return taken_[i]; }
 
@@ -98,7 +101,7 @@ Chart Gatherer::gather(size_t first, double &area)
                 goes_on = true;
         }
     }
-    if (!goes_on)
+    if (!goes_on && length(sum) / 2 < DUST * job_.pitch * job_.pitch)
         area = 0;
     std::sort(chart.triangles.begin(), chart.triangles.end());
     chart.frame = make_frame(job_.mesh, chart.triangles, normalize(sum));

@@ -24,8 +24,11 @@ constexpr double MAX_BELOW = 0.5, MAX_ABOVE = 1;
 /* Texels outside its outline to which a height field shows what faces its axis as much, from the
  * side too; a wall shows well inside the outline only. */
 constexpr double SEEN = GTX_TRIM_SHOWN / 2, MIN_FACING = 0.15, INSIDE = 0.1;
-/* What faces away from its own chart by more is twisted inside out: seen from nowhere. */
-constexpr double TWISTED = -0.4;
+/* One that is off by more than this, in texels along its axis, has to have a normal there so much
+ * like the source's: across a wall the distance along the source's normal is none. OFF_ALONG at
+ * 0.5 makes 2 hole pixels on Duck, at 1 an engine has 17 for 3; MIN_ALIKE at 0.2 leaves a groove of
+ * the snapper open (48). */
+constexpr double OFF_ALONG = 0.75, MIN_ALIKE = 0.3;
 /* The trim of a height field that is as near as this along the normal is relaxed by so many texels
  * at most. */
 constexpr double MAX_OFF = MAX_BELOW / 2, MAX_RELAXED = 1;
@@ -83,13 +86,16 @@ private:
 
 bool Search::shown_by(const HeightField &field, const Sample &at, double max_above) const
 {
-    const double facing = dot(at.normal, field.axis[2]);
+    const double cosine = dot(at.normal, field.axis[2]), facing = field.facing(at.normal);
     double above, trim;
     if (facing < 0 || !field.field_above(at.point, above, trim) ||
         trim > (facing < MIN_FACING ? -INSIDE : SEEN))
         return false;
-    const double off = above * facing / job_.pitch;
-    return off >= -MAX_BELOW && off <= max_above;
+    const double off = above * cosine / job_.pitch;
+    return off >= -MAX_BELOW && off <= max_above &&
+           (std::abs(above) <= OFF_ALONG * job_.pitch ||
+            (cosine >= 0 &&
+             dot(at.normal, field.normal(field.place_of(at.point))) >= MIN_ALIKE));
 }
 
 /* The height fields that may show what of a triangle there is, as long as the budget lasts. */
@@ -103,7 +109,7 @@ Vector<const HeightField *> Search::facing_near(const Vec3d (&corner)[3], const 
     fields_.any_near(box, MAX_ABOVE * job_.pitch, [&](const HeightField &field) {
         budget.spend(1);
         cancel_point();
-        if (dot(normal, field.axis[2]) >= 0)
+        if (field.facing(normal) >= 0)
             near.push_back(&field);
         return budget.spent();
     });
@@ -119,7 +125,7 @@ bool Search::shown_by_any(Vector<const HeightField *> &near, const Sample &at, d
         cancel_point();
         if (budget.spent())
             break;
-        if (dot(at.normal, field->axis[2]) < min_facing || !shown_by(*field, at, MAX_ABOVE))
+        if (field->facing(at.normal) < min_facing || !shown_by(*field, at, MAX_ABOVE))
             continue;
         std::swap(field, near[0]);
         return true;
@@ -136,7 +142,7 @@ std::optional<RelaxedTrim> Search::find_hidden(const Vector<const HeightField *>
     const HeightField *found = nullptr;
     double least = most;
     for (const HeightField *field : near) {
-        const double facing = dot(at.normal, field->axis[2]);
+        const double facing = field->facing(at.normal);
         double above, trim;
         budget.spend(1);
         cancel_point();
@@ -213,9 +219,9 @@ double Search::uncovered_share(size_t field, const FrameInverse &inverse, uint32
     const Vec3d e = mesh.position(triangle, 1) - job_.anchor - first;
     const Vec3d f = mesh.position(triangle, 2) - job_.anchor - first;
     const Vec3d normal = normalize(cross(e, f));
-    if (!(dot(normal, own.axis[2]) > TWISTED) || is_masked(mesh, triangle))
+    const double facing = own.facing(normal);
+    if (is_masked(mesh, triangle))
         return 0;
-    const double facing = dot(normal, own.axis[2]);
     const bool steep = facing < STEEP;
     const int parts = parts_of(triangle), samples = parts * (parts + 1) / 2;
     if (!steep && own.surely_shows({first, first + e, first + f},
