@@ -4,8 +4,8 @@
  * than a texel in space, and where a trim was relaxed to show a wall it goes on above or below the
  * wall's end. So trims rise there until nothing shows that is away from the source; what lies on
  * the source stays, and so does an end that no other height field meets though one is near, unless
- * another shows the source beside it. What is only beside the source stays where another is near
- * but does not show it: it may close a gap. */
+ * another shows the source beside it, or the source is far. What is only beside the source stays
+ * where another is near but does not show it: it may close a gap. */
 #include "bake/budget.hpp"
 #include "bake/seam/near_source.hpp"
 #include "bake/seam/seam.hpp"
@@ -39,7 +39,8 @@ namespace {
 
 constexpr double SHOWN = GTX_TRIM_OUTLINE + GTX_TRIM_TEXEL * GTX_TRIM_SHOWN; /* a code */
 
-enum Lies : uint8_t { ON_SOURCE, BESIDE_IT, AWAY_FROM_IT };
+/* Far from it: so far that no source is looked for. */
+enum Lies : uint8_t { ON_SOURCE, BESIDE_IT, AWAY_FROM_IT, FAR_FROM_IT };
 
 /* What other height fields have at a point. */
 enum Other : uint8_t { NONE, NEAR_IT, THERE };
@@ -96,6 +97,8 @@ private:
     bool is_met(size_t first, size_t end, const HeightFields &fields, Budget &budget) const;
     bool is_in_front(const Sample &sample, const NearSource &source, const HeightFields &fields,
                      Budget &budget, size_t &looks) const;
+    void mark_sheet(size_t cell);
+    bool at_sheet(const CellPoint &place) const;
     bool stays(const Sample &sample, const HeightFields &fields, Budget &budget) const;
     void hide(const CellPoint &place);
     void show(const CellPoint &place);
@@ -106,6 +109,7 @@ private:
     Vector<uint8_t> trim_;
     const double texel_;         /* of the model */
     Vector<Sample> samples_;     /* by cells, rows and columns */
+    Vector<uint8_t> sheet_;      /* corners of cells with samples far from the source, if any */
 };
 
 /* Whether a cell shows much past an outline that crosses it or runs beside it. */
@@ -186,12 +190,30 @@ bool Fins::is_in_front(const Sample &sample, const NearSource &source, const Hei
            other_at(nearest, REACHED, fields, budget) == THERE;
 }
 
-/* Whether what a cell showed there is to show whatever is taken back beside it. */
+void Fins::mark_sheet(size_t cell)
+{
+    sheet_.resize(trim_.size());
+    for (size_t t : corners(cell))
+        sheet_[t] = 1;
+}
+
+bool Fins::at_sheet(const CellPoint &place) const
+{
+    for (size_t k = 0; k < 4 && !sheet_.empty(); ++k)
+        if (place.weight(k) > 0 && sheet_[own_.corner(place, k)])
+            return true;
+    return false;
+}
+
+/* Whether what a cell showed there is to show whatever is taken back beside it. A sheet in the air
+ * hangs between two places on the source: it goes only if they do, where another has them. */
 bool Fins::stays(const Sample &sample, const HeightFields &fields, Budget &budget) const
 {
-    return sample.lies == ON_SOURCE ||
-           (sample.lies == BESIDE_IT && trim_at(trim_, sample.place()) > SHOWN &&
-            other_at(own_.point(sample.place()), GTX_TRIM_SHOWN, fields, budget) == NEAR_IT);
+    const CellPoint place = sample.place();
+    if (sample.lies == ON_SOURCE)
+        return !at_sheet(place) || other_at(own_.point(place), 0, fields, budget) != THERE;
+    return sample.lies == BESIDE_IT && trim_at(trim_, place) > SHOWN &&
+           other_at(own_.point(place), GTX_TRIM_SHOWN, fields, budget) == NEAR_IT;
 }
 
 bool Fins::judge(const NearSource &source, const HeightFields &fields)
@@ -208,8 +230,11 @@ bool Fins::judge(const NearSource &source, const HeightFields &fields)
                 source.distance(own_.point(sample.place()), ON * texel_, near, looks);
             sample.lies = distance <= ON * texel_ || !looks ? ON_SOURCE
                           : distance <= AWAY * texel_       ? BESIDE_IT
-                                                            : AWAY_FROM_IT;
-            away = away || sample.lies == AWAY_FROM_IT;
+                          : distance <= BESIDE * texel_     ? AWAY_FROM_IT
+                                                            : FAR_FROM_IT;
+            away = away || sample.lies >= AWAY_FROM_IT;
+            if (sample.lies == FAR_FROM_IT)
+                mark_sheet(sample.cell);
         }
         if (away && is_met(first, end, fields, budget)) {
             any = true;
@@ -217,7 +242,9 @@ bool Fins::judge(const NearSource &source, const HeightFields &fields)
         }
         for (size_t i = first; i < end; ++i) {
             Sample &sample = samples_[i];
-            if (sample.lies == AWAY_FROM_IT && is_in_front(sample, source, fields, budget, looks))
+            if (sample.lies == FAR_FROM_IT ||
+                (sample.lies == AWAY_FROM_IT &&
+                 is_in_front(sample, source, fields, budget, looks)))
                 any = true;
             else
                 sample.lies = std::min(sample.lies, BESIDE_IT);
@@ -273,7 +300,7 @@ Vector<uint8_t> Fins::take_back(const HeightFields &fields)
 {
     Budget budget(double(LOOKS * samples_.size()));
     for (const Sample &sample : samples_)
-        if (sample.lies == AWAY_FROM_IT)
+        if (sample.lies >= AWAY_FROM_IT)
             hide(sample.place());
     size_t next = 0;
     for (int j = 0; j + 1 < own_.h; ++j)
