@@ -28,7 +28,8 @@ constexpr double LONG = 0.6;
 /* Texels that another height field may be off, and texels outside its outline to which it counts,
  * where it meets an end. Where none has to, Spot's control mesh has a hole. */
 constexpr double MISSED = 0.3, REACHED = 0.1;
-/* Texels off and outside its outline up to which another is near. */
+/* Texels off and outside its outline up to which another is near. Gargoyle and Spot's control mesh:
+ * no pixel at half and at double. */
 constexpr double NEARBY = 1;
 /* Samples along a cell, less one. At half the gargoyle has 110 wall pixels for 92. */
 constexpr uint8_t PARTS = 4;
@@ -109,7 +110,7 @@ private:
     Vector<uint8_t> trim_;
     const double texel_;         /* of the model */
     Vector<Sample> samples_;     /* by cells, rows and columns */
-    Vector<uint8_t> sheet_;      /* corners of cells with samples far from the source, if any */
+    Vector<uint8_t> sheet_;      /* corners of cells of which something is taken back, if any */
 };
 
 /* Whether a cell shows much past an outline that crosses it or runs beside it. */
@@ -233,10 +234,9 @@ bool Fins::judge(const NearSource &source, const HeightFields &fields)
                           : distance <= BESIDE * texel_     ? AWAY_FROM_IT
                                                             : FAR_FROM_IT;
             away = away || sample.lies >= AWAY_FROM_IT;
-            if (sample.lies == FAR_FROM_IT)
-                mark_sheet(sample.cell);
         }
         if (away && is_met(first, end, fields, budget)) {
+            mark_sheet(samples_[first].cell);
             any = true;
             continue;
         }
@@ -244,10 +244,12 @@ bool Fins::judge(const NearSource &source, const HeightFields &fields)
             Sample &sample = samples_[i];
             if (sample.lies == FAR_FROM_IT ||
                 (sample.lies == AWAY_FROM_IT &&
-                 is_in_front(sample, source, fields, budget, looks)))
+                 is_in_front(sample, source, fields, budget, looks))) {
+                mark_sheet(sample.cell);
                 any = true;
-            else
+            } else {
                 sample.lies = std::min(sample.lies, BESIDE_IT);
+            }
         }
     }
     return any;
