@@ -114,7 +114,7 @@ void AssetView::cast_nearest(const View &view, uint32_t j, const Vector<uint32_t
             const Vec3d from = view.at(pixels[k], j) - anchor;
             rays.push_back({{float(from.x), float(from.y), float(from.z)}, 0,
                             {float(-view.toward.x), float(-view.toward.y), float(-view.toward.z)},
-                            0});
+                            std::isinf(hits[k].t) ? 0 : hits[k].t}); /* 0: without end */
             cast.push_back(k);
         }
         found.resize(rays.size());
