@@ -1,16 +1,18 @@
-/* No ray passes through a wall of rough terrain that is too steep for the chart that it is in. */
+/* No ray passes through rough terrain where its own chart does not show it. */
 #include "worlds.hpp"
+
+#include <geotex/cook.h>
 
 #include <cmath>
 
 using namespace gtx;
 
-/* Of rays within 1.3 texels of a place of the source, which is behind all of them: those that meet
- * nothing there. */
-static size_t rays_through(const gtx_asset *asset, const Vec3d &at, const Vec3d &toward)
+/* Of rays within `reach` / 19 texels of a place of the source, which is behind all of them: those
+ * that meet nothing within two texels of it. */
+static size_t rays_through(const gtx_asset *asset, const Vec3d &at, const Vec3d &toward,
+                           double texel, int reach)
 {
-    constexpr int REACH = 24;
-    constexpr double STEP = 0.0002, NEAR = 0.008; /* a texel is 0.0038 */
+    const double STEP = texel / 19, NEAR = 2.1 * texel;
     gtx_info info;
     gtx_error error;
     gtx_caster *caster = nullptr;
@@ -19,8 +21,8 @@ static size_t rays_through(const gtx_asset *asset, const Vec3d &at, const Vec3d 
         fail_msg("%s", error.message);
     const Vec3d x = normalize(cross(toward, Vec3d(1, 0, 0))), y = cross(toward, x);
     size_t through = 0;
-    for (int j = -REACH; j <= REACH; ++j)
-        for (int i = -REACH; i <= REACH; ++i) {
+    for (int j = -reach; j <= reach; ++j)
+        for (int i = -reach; i <= reach; ++i) {
             const Vec3d from = at + x * (STEP * i) + y * (STEP * j) + toward * NEAR -
                                Vec3d(info.anchor[0], info.anchor[1], info.anchor[2]);
             const gtx_ray ray = {{float(from.x), float(from.y), float(from.z)}, 0,
@@ -52,17 +54,47 @@ static void a_steep_wall_is_whole(void **)
     gtx_error error;
     if (gtx_open_file(in_folder("rough/tiles/r50.gtx").c_str(), nullptr, &asset, &error))
         fail_msg("%s", error.message);
-    const size_t through =
-        rays_through(asset, {0.26518, 0.013375, 0.339637}, normalize(Vec3d(-0.08, 0.87, -0.49)));
+    const size_t through = rays_through(asset, {0.26518, 0.013375, 0.339637},
+                                        normalize(Vec3d(-0.08, 0.87, -0.49)), 0.0038, 24);
     print_message("# %zu rays pass\n", through);
     assert_int_equal(through, 0);
     gtx_close(asset);
+}
+
+/* An asset of its own, of which a texel is 0.0066. */
+static void is_whole_at(double seed, const Vec3d &at, const Vec3d &normal)
+{
+    const std::string path = in_folder("whole.ply");
+    write_file(path, ply_text(rough_terrain(40, 0.8, 0.2, seed, 2.399)));
+    gtx_asset *asset = nullptr;
+    gtx_error error;
+    if (gtx_cook_file(path.c_str(), in_folder("whole.gtx").c_str(), nullptr, nullptr, &error) ||
+        gtx_open_file(in_folder("whole.gtx").c_str(), nullptr, &asset, &error))
+        fail_msg("%s", error.message);
+    const size_t through = rays_through(asset, at, normalize(normal), 0.0066, 12);
+    print_message("# %zu rays pass\n", through);
+    assert_int_equal(through, 0);
+    gtx_close(asset);
+}
+
+/* Another height field is right there, as steep as the own one; neither's trim hides anything. */
+static void what_two_charts_miss_is_whole(void **)
+{
+    is_whole_at(7, {0.7718, 0.0744, 0.9495}, {-0.632, 0.240, -0.737});
+}
+
+/* The side of a crest is within a texel of its top, along the normal of the top, and crosses it. */
+static void a_crest_beside_its_side_is_whole(void **)
+{
+    is_whole_at(8, {-0.3633, -0.0346, 0.0593}, {0.238, 0.890, -0.388});
 }
 
 int main()
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_steep_wall_is_whole),
+        cmocka_unit_test(what_two_charts_miss_is_whole),
+        cmocka_unit_test(a_crest_beside_its_side_is_whole),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

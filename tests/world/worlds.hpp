@@ -31,12 +31,16 @@ inline gtx::Mesh terrain(unsigned n)
     });
 }
 
-/* The same, with so much of the height at each octave, down to that of its vertices. */
-inline gtx::Mesh rough_terrain(unsigned n, double gain = 0.7)
+/* The same, with so much of the height at each octave, down to that of its vertices; each octave is
+ * turned from the one before. */
+inline gtx::Mesh rough_terrain(unsigned n, double gain = 0.7, double amplitude = 0.12,
+                               double seed = 2, double each = 2.4)
 {
-    return shapes::field(n, [n, gain](double u, double v) {
-        double h = 0, size = 0.12, turn = 2;
-        for (double f = 3; f < 2.5 * n; f *= 2, size *= gain, turn += 2.4) {
+    return shapes::field(n, [=](double u, double v) {
+        double h = 0, size = amplitude;
+        int k = 0;
+        for (double f = 3; f < 2.5 * n; f *= 2, size *= gain, ++k) {
+            const double turn = each * k + seed;
             const double x = std::cos(turn) * u - std::sin(turn) * v;
             const double y = std::sin(turn) * u + std::cos(turn) * v;
             h += size * std::sin(f * x + 1.7 * turn) * std::cos(f * y - 0.9 * turn);

@@ -15,7 +15,7 @@ namespace gtx::baking {
 /* Measured on Spot's control mesh, the truck, Duck and bunny, at half and at double:
  * MAX_BELOW   2 % more texels | 2 % fewer patches       MAX_ABOVE  a few bytes | RMS +8 %
  * MIN_FACING  2 % fewer patches | 2 % more              INSIDE     2 % fewer patches | RMS +1 %
- * TWISTED     a patch fewer (bunny) | 2 % more (Duck)   SAMPLES    2 % fewer patches | 2 % more
+ * SAMPLES     2 % fewer patches | 2 % more
  * SEEN, MAX_OFF, MAX_RELAXED, STEEP and NEEDLE: below 1 % both ways. */
 
 /* A height field shows what it lies no deeper below than this, nor, when it is another chart's,
@@ -24,14 +24,14 @@ constexpr double MAX_BELOW = 0.5, MAX_ABOVE = 1;
 /* Texels outside its outline to which a height field shows what faces its axis as much, from the
  * side too; a wall shows well inside the outline only. */
 constexpr double SEEN = GTX_TRIM_SHOWN / 2, MIN_FACING = 0.15, INSIDE = 0.1;
-/* One that is off by more than this, in texels along its axis, has to have a normal there so much
- * like the source's: across a wall the distance along the source's normal is none. OFF_ALONG at
- * 0.5 makes 2 hole pixels on Duck, at 1 an engine has 17 for 3; MIN_ALIKE at 0.2 leaves a groove of
- * the snapper open (48). */
-constexpr double OFF_ALONG = 0.75, MIN_ALIKE = 0.3;
+/* Another height field that itself faces a place of the source less only crosses the surface there:
+ * the side of a crest ends in its top. At half a terrain (gain .9) has a hole that it has not at
+ * this; at double the gargoyle has 2 % more patches. */
+constexpr double MIN_ALONG = 0.25;
 /* The trim of a height field that is as near as this along the normal is relaxed by so many texels
  * at most. */
 constexpr double MAX_OFF = MAX_BELOW / 2, MAX_RELAXED = 1;
+constexpr int SPARE = 1; /* trim codes, for rounding */
 /* The same of one that a place faces which is steep to its own chart. At half rough terrain has a
  * slit (tests/world/test_rough), at double the gargoyle has 106 wall pixels for 80. */
 constexpr double MAX_RELAXED_STEEP = 0.5;
@@ -70,7 +70,8 @@ private:
     int parts_of(uint32_t triangle) const;
     double uncovered_share(size_t field, const FrameInverse &inverse, uint32_t triangle,
                            Budget &budget, Vector<RelaxedTrim> &relaxed) const;
-    bool shown_by(const HeightField &field, const Sample &at, double max_above) const;
+    bool has_cell(const HeightField &field, const Sample &at, double &above) const;
+    bool shown_by_another(const HeightField &field, const Sample &at) const;
     Vector<const HeightField *> facing_near(const Vec3d (&corner)[3], const Vec3d &normal,
                                             Budget &budget) const;
     bool shown_by_any(Vector<const HeightField *> &near, const Sample &at, double min_facing,
@@ -84,18 +85,31 @@ private:
     const HeightFields fields_;
 };
 
-bool Search::shown_by(const HeightField &field, const Sample &at, double max_above) const
+/* Whether a height field has a cell there that is not hidden, and how far that is above it, in
+ * texels along its axis. */
+bool Search::has_cell(const HeightField &field, const Sample &at, double &above) const
 {
     const double cosine = dot(at.normal, field.axis[2]), facing = field.facing(at.normal);
-    double above, trim;
+    double trim;
     if (facing < 0 || !field.field_above(at.point, above, trim) ||
         trim > (facing < MIN_FACING ? -INSIDE : SEEN))
         return false;
-    const double off = above * cosine / job_.pitch;
-    return off >= -MAX_BELOW && off <= max_above &&
-           (std::abs(above) <= OFF_ALONG * job_.pitch ||
-            (cosine >= 0 &&
-             dot(at.normal, field.normal(field.place_of(at.point))) >= MIN_ALIKE));
+    above *= (cosine < 0 ? -1 : 1) / job_.pitch;
+    return above * facing >= -MAX_BELOW;
+}
+
+/* The way along the source's normal is as long as the source is even, or as the height field is:
+ * neither is where they cross. */
+bool Search::shown_by_another(const HeightField &field, const Sample &at) const
+{
+    double above;
+    if (!has_cell(field, at, above) || above * field.facing(at.normal) > MAX_ABOVE)
+        return false;
+    const Vec3d normal = field.normal(field.place_of(at.point));
+    const double cosine = dot(at.normal, field.axis[2]);
+    const double along = dot(at.normal, normal) * (cosine < 0 ? -1 : 1);
+    const double way = above * dot(normal, field.axis[2]) / along;
+    return along >= MIN_ALONG && way >= -MAX_BELOW && way <= MAX_ABOVE;
 }
 
 /* The height fields that may show what of a triangle there is, as long as the budget lasts. */
@@ -125,7 +139,7 @@ bool Search::shown_by_any(Vector<const HeightField *> &near, const Sample &at, d
         cancel_point();
         if (budget.spent())
             break;
-        if (field->facing(at.normal) < min_facing || !shown_by(*field, at, MAX_ABOVE))
+        if (field->facing(at.normal) < min_facing || !shown_by_another(*field, at))
             continue;
         std::swap(field, near[0]);
         return true;
@@ -158,7 +172,7 @@ std::optional<RelaxedTrim> Search::find_hidden(const Vector<const HeightField *>
     }
     if (!found)
         return {};
-    const int by = int(std::ceil((least - SEEN) * GTX_TRIM_TEXEL)) + 1;
+    const int by = int(std::ceil((least - SEEN) * GTX_TRIM_TEXEL)) + SPARE;
     return RelaxedTrim{fields_.patch(*found), found->place_of(at.point).cell, by};
 }
 
@@ -235,7 +249,8 @@ double Search::uncovered_share(size_t field, const FrameInverse &inverse, uint32
         const Vec3d across = f * ((j + 1 / 3.) / parts);
         for (int i = 0; i + j < parts; ++i) {
             const Sample at = {first + e * ((i + 1 / 3.) / parts) + across, normal};
-            const bool by_own = shown_by(own, at, INFINITY);
+            double above;
+            const bool by_own = has_cell(own, at, above);
             if (by_own && !steep)
                 continue;
             if (std::exchange(first_look, false) &&
@@ -252,7 +267,8 @@ double Search::uncovered_share(size_t field, const FrameInverse &inverse, uint32
                 hidden = find_hidden(*near, at, STEEP, MAX_RELAXED_STEEP, budget);
             if (!hidden)
                 hidden = find_hidden(*near, at, MIN_FACING, MAX_RELAXED, budget);
-            if (hidden)
+            /* one that is steep there, too, and hides nothing misses it as the own one does */
+            if (hidden && (by_own || hidden->by > SPARE))
                 relaxed.push_back(*hidden);
             else
                 uncovered += !by_own || parts >= LONG;
