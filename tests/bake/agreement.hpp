@@ -45,6 +45,14 @@ struct Pages {
         size_t at = row * info.page_width + p.rect[0] + size_t(i);
         return height[at] ? at : none;
     }
+    uint64_t all_covered(const gtx_patch &p) const
+    {
+        uint64_t count = 0;
+        for (int j = 0; j < p.rect[3]; ++j)
+            for (int i = 0; i < p.rect[2]; ++i)
+                count += covered(p, i, j) != none;
+        return count;
+    }
 };
 
 /* From one patch's texels to those of another of the same frame: maps may begin elsewhere. */
@@ -97,20 +105,42 @@ inline void add_patch(const Pages &a, const gtx_patch &p, const Pages &b, const 
             out.color += a.color && far(a.color + 4 * x, b.color + 4 * y, 4);
         }
     }
-    for (int j = 0; j < q.rect[3]; ++j)
-        for (int i = 0; i < q.rect[2]; ++i)
-            either += b.covered(q, i, j) != b.none;
+    either += b.all_covered(q);
     out.both += both;
     out.either += either - both;
 }
 
-/* Assets of other numbers of patches agree nowhere. */
+inline bool is_same(const gtx_patch &p, const gtx_patch &q)
+{
+    double apart = 0;
+    for (int k = 0; k < 3; ++k)
+        apart = std::max({apart, std::fabs(double(p.axis_x[k]) - q.axis_x[k]),
+                          std::fabs(double(p.axis_y[k]) - q.axis_y[k]),
+                          std::fabs(double(p.axis_z[k]) - q.axis_z[k])});
+    return apart < 1e-6 && p.source_triangles == q.source_triangles;
+}
+
+/* Patches are in the same order, but for some that one asset has alone: those of surface that
+ * heights a code apart leave uncovered. */
 inline Agreement measure(const gtx_asset *one, const gtx_asset *other)
 {
     const Pages a(one), b(other);
     Agreement out;
-    for (uint32_t i = 0; i < a.info.patch_count && a.info.patch_count == b.info.patch_count; ++i)
-        add_patch(a, a.patches[i], b, b.patches[i], out);
+    uint32_t next = 0;
+    for (uint32_t i = 0; i < a.info.patch_count; ++i) {
+        uint32_t same = next;
+        while (same < b.info.patch_count && !is_same(a.patches[i], b.patches[same]))
+            ++same;
+        if (same == b.info.patch_count) {
+            out.either += a.all_covered(a.patches[i]);
+            continue;
+        }
+        for (; next < same; ++next)
+            out.either += b.all_covered(b.patches[next]);
+        add_patch(a, a.patches[i], b, b.patches[next++], out);
+    }
+    for (; next < b.info.patch_count; ++next)
+        out.either += b.all_covered(b.patches[next]);
     return out;
 }
 

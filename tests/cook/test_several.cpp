@@ -128,8 +128,7 @@ static void memory_and_file_give_the_same_bytes(void **)
     gtx_error error = {};
     if (gtx_cook_memory(bytes.data(), bytes.size(), "any.obj", nullptr, &asset, &report, &error))
         fail_msg("%s", error.message);
-    gtx_encode_desc encode = {};
-    encode.zstd_level = 3;
+    const gtx_encode_desc encode = {};
     void *data = nullptr;
     size_t size = 0;
     assert_int_equal(gtx_encode(asset, &encode, &data, &size, nullptr), GTX_OK);

@@ -101,8 +101,7 @@ static void assets_open_side_by_side(void **)
         gtx_asset *asset = nullptr;
         if (gtx_open_memory(bytes.data(), bytes.size(), nullptr, &asset, nullptr) != GTX_OK)
             return false;
-        gtx_encode_desc desc = {};
-        desc.zstd_level = 3;
+        const gtx_encode_desc desc = {};
         void *again = nullptr;
         size_t size = 0;
         bool good = gtx_encode(asset, &desc, &again, &size, nullptr) == GTX_OK &&
