@@ -34,26 +34,37 @@ struct EdgeEntry {
     }
 };
 
-/* Calls visit(entries, count) once for every undirected edge, its half-edges in rising order.
- * A counting sort by the lower vertex leaves lists of about three entries. */
-template <class Visit> void for_each_edge(const Mesh &mesh, Visit visit)
+/* In how many parts the vertices of a mesh are best done at once, where each part looks at all
+ * triangles for its own: no more than there are threads. */
+inline size_t vertex_parts(const Mesh &mesh, const Task &task)
 {
-    Vector<uint32_t> end(mesh.positions.size() + 1, 0);
+    constexpr size_t LEAST = 1 << 12;
+    return std::min<size_t>(task.threads(), task.parts(mesh.positions.size(), LEAST));
+}
+
+/* Calls visit(entries, count) once for every undirected edge whose lower vertex is in [begin,
+ * after), by that vertex, its half-edges in rising order. A counting sort by the lower vertex
+ * leaves lists of about three entries. */
+template <class Visit>
+void for_each_edge(const Mesh &mesh, size_t begin, size_t after, Visit visit)
+{
+    Vector<uint32_t> end(after - begin + 1, 0);
     auto each_half_edge = [&](auto body) {
         for (size_t t = 0; t < mesh.triangles.size(); ++t)
             for (int k = 0; k < 3; ++k) {
                 uint32_t a = mesh.triangles[t][k], b = mesh.triangles[t][(k + 1) % 3];
-                body(std::min(a, b), EdgeEntry{std::max(a, b), uint32_t(3 * t + k)});
+                if (const size_t low = std::min(a, b) - begin; low < after - begin)
+                    body(low, EdgeEntry{std::max(a, b), uint32_t(3 * t + k)});
             }
     };
-    each_half_edge([&](uint32_t low, const EdgeEntry &) { ++end[low + 1]; });
+    each_half_edge([&](size_t low, const EdgeEntry &) { ++end[low + 1]; });
     for (size_t v = 1; v < end.size(); ++v)
         end[v] += end[v - 1];
-    Vector<EdgeEntry> entries(3 * mesh.triangles.size());
-    each_half_edge([&](uint32_t low, const EdgeEntry &entry) { entries[end[low]++] = entry; });
+    Vector<EdgeEntry> entries(end.back());
+    each_half_edge([&](size_t low, const EdgeEntry &entry) { entries[end[low]++] = entry; });
 
     EdgeEntry *from = entries.data();
-    for (size_t v = 0; v < mesh.positions.size(); ++v) {
+    for (size_t v = 0; v < after - begin; ++v) {
         EdgeEntry *to = entries.data() + end[v];
         std::sort(from, to);
         while (from != to) {
@@ -63,6 +74,12 @@ template <class Visit> void for_each_edge(const Mesh &mesh, Visit visit)
             visit(static_cast<const EdgeEntry *>(first), size_t(from - first));
         }
     }
+}
+
+/* For every edge of the mesh. */
+template <class Visit> void for_each_edge(const Mesh &mesh, Visit visit)
+{
+    for_each_edge(mesh, 0, mesh.positions.size(), visit);
 }
 
 } // namespace gtx

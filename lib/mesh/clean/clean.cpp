@@ -73,22 +73,22 @@ Mesh clean_mesh(Mesh mesh, Task &task, CleanReport &report, bool closed)
     if (mesh.triangles.size() >= NO_EDGE / 3 || mesh.positions.size() >= NO_EDGE)
         throw Error(GTX_ERROR_LIMIT, "more triangles than 32 bits can count");
     drop_misfits(mesh);
-    drop_invalid(mesh, report);
+    drop_invalid(mesh, task, report);
     task.advance(0.1);
-    weld(mesh);
+    weld(mesh, &task);
     task.advance(0.2);
-    Vector<uint8_t> thin = drop_duplicates(mesh, report);
+    Vector<uint8_t> thin = drop_duplicates(mesh, task, report);
     task.advance(0.3);
     warn_dropped(task, report);
     if (mesh.triangles.empty())
         throw Error(GTX_ERROR_EMPTY, "no triangle with a finite, non-zero area");
 
     Draft surface{mesh, std::move(thin), {}, {}, Vector<uint8_t>(mesh.triangles.size(), 0)};
-    pair_edges(surface, report);
+    pair_edges(surface, task, report);
     task.advance(0.4);
     orient(surface);
     task.advance(0.5);
-    split_fans(surface);
+    split_fans(surface, task);
     task.advance(0.6);
     choose_sides(surface, closed, task, report);
     task.advance(0.7);

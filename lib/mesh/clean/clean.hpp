@@ -7,16 +7,16 @@ namespace gtx {
 
 /* Triangles that name no vertex, lie nowhere or have no area: "index", "non-finite",
  * "degenerate". */
-void drop_invalid(Mesh &mesh, CleanReport &report);
+void drop_invalid(Mesh &mesh, Task &task, CleanReport &report);
 
 /* Merges vertices at equal positions, numbers them in the order of first use and drops the
- * others. */
-void weld(Mesh &mesh);
+ * others; on the task's threads where it has one. */
+void weld(Mesh &mesh, Task *task = nullptr);
 
 /* Of triangles on the same three vertices one stays: "duplicate". It winds as most do. Returns for
  * each triangle kept whether as many of its copies wound one way as the other: they were the two
  * sides of a sheet without thickness. */
-Vector<uint8_t> drop_duplicates(Mesh &mesh, CleanReport &report);
+Vector<uint8_t> drop_duplicates(Mesh &mesh, Task &task, CleanReport &report);
 
 /* Calls use(vector) for each attribute of corners; those that a mesh lacks are empty. */
 template <class Use> void for_each_corner_attribute(Mesh &mesh, Use use)
@@ -35,6 +35,7 @@ struct Draft {
     Vector<uint32_t> twin;         /* per half-edge: the other side of the edge, or NO_EDGE */
     Vector<uint32_t> suspect;      /* half-edges whose two ends may be shared by another edge */
     Vector<uint8_t> turned;        /* per triangle: its winding differs from the source's */
+    bool reversed = false;         /* some twins run the same way: wound against each other */
     uint64_t cut_edges = 0;        /* opened because the surface has one side only */
     uint64_t inside_out = 0;       /* closed components that were turned */
     uint64_t open_components = 0;
@@ -42,13 +43,13 @@ struct Draft {
 };
 
 /* Finds twins. Edges with more than two triangles are split. */
-void pair_edges(Draft &surface, CleanReport &report);
+void pair_edges(Draft &surface, Task &task, CleanReport &report);
 
 /* Gives all triangles of a component the winding that most of them have. */
 void orient(Draft &surface);
 
 /* Gives every fan of triangles a vertex of its own. */
-void split_fans(Draft &surface);
+void split_fans(Draft &surface, Task &task);
 
 /* Turns closed components that are inside out, flags open ones as two-sided, counts both. One with
  * gaps of at most 1 % of its area counts as closed. Where all is `cut` out of a closed surface open

@@ -49,19 +49,38 @@ static void pair_many(Draft &surface, const EdgeEntry *edge, size_t count)
             join(surface.twin, c.a, c.b);
 }
 
-void pair_edges(Draft &surface, CleanReport &report)
+void pair_edges(Draft &surface, Task &task, CleanReport &report)
 {
-    surface.twin.assign(3 * surface.mesh.triangles.size(), NO_EDGE);
-    for_each_edge(surface.mesh, [&](const EdgeEntry *edge, size_t count) {
-        if (count == 2)
-            join(surface.twin, edge[0].half_edge, edge[1].half_edge);
-        if (count <= 2)
-            return;
-        ++report.nonmanifold_edges;
-        pair_many(surface, edge, count);
-        for (size_t i = 0; i < count; ++i)
-            surface.suspect.push_back(edge[i].half_edge);
+    const Mesh &mesh = surface.mesh;
+    surface.twin.assign(3 * mesh.triangles.size(), NO_EDGE);
+    struct Found {
+        Vector<uint32_t> suspect;
+        uint64_t nonmanifold = 0;
+        bool reversed = false;
+    };
+    Vector<Found> found(vertex_parts(mesh, task));
+    task.in_parts(mesh.positions.size(), found.size(), [&](size_t part, size_t from, size_t to) {
+        Found own;
+        for_each_edge(mesh, from, to, [&](const EdgeEntry *edge, size_t count) {
+            if (count == 2) {
+                const uint32_t a = edge[0].half_edge, b = edge[1].half_edge;
+                join(surface.twin, a, b);
+                own.reversed = own.reversed || start_of(mesh, a) == start_of(mesh, b);
+            }
+            if (count <= 2)
+                return;
+            ++own.nonmanifold;
+            pair_many(surface, edge, count);
+            for (size_t i = 0; i < count; ++i)
+                own.suspect.push_back(edge[i].half_edge);
+        });
+        found[part] = std::move(own);
     });
+    for (const Found &own : found) {
+        surface.suspect.insert(surface.suspect.end(), own.suspect.begin(), own.suspect.end());
+        report.nonmanifold_edges += own.nonmanifold;
+        surface.reversed = surface.reversed || own.reversed;
+    }
 }
 
 void turn_triangles(Draft &surface, const Vector<uint8_t> &turn)
@@ -90,6 +109,8 @@ void turn_triangles(Draft &surface, const Vector<uint8_t> &turn)
 /* Around a one-sided surface the flood meets itself turned over: there it is cut. */
 void orient(Draft &surface)
 {
+    if (!surface.reversed)
+        return;
     const Mesh &mesh = surface.mesh;
     Vector<uint32_t> &twin = surface.twin;
     Vector<uint8_t> turn(mesh.triangles.size(), 0);

@@ -19,25 +19,44 @@ void fan_of(const Vector<uint32_t> &twin, uint32_t c, Vector<uint32_t> &fan)
     } while (corner != NO_EDGE && corner != first);
 }
 
-static void one_vertex_a_fan(Draft &surface)
+/* The lowest corners of the fans around vertices that a fan of lower corners has, in rising order.
+ * All corners of a fan have one vertex, and so one part. */
+static Vector<uint32_t> further_fans(const Draft &surface, Task &task)
+{
+    const Mesh &mesh = surface.mesh;
+    Vector<uint8_t> seen(surface.twin.size(), false), taken(mesh.positions.size(), false);
+    Vector<Vector<uint32_t>> found(vertex_parts(mesh, task));
+    task.in_parts(taken.size(), found.size(), [&](size_t part, size_t from, size_t to) {
+        Vector<uint32_t> fan;
+        for (uint32_t c = 0; c < surface.twin.size(); ++c) {
+            const uint32_t v = start_of(mesh, c);
+            if (v < from || v >= to || seen[c])
+                continue;
+            fan_of(surface.twin, c, fan);
+            for (uint32_t corner : fan)
+                seen[corner] = true;
+            if (taken[v])
+                found[part].push_back(c);
+            taken[v] = true;
+        }
+    });
+    Vector<uint32_t> all;
+    for (const Vector<uint32_t> &own : found)
+        all.insert(all.end(), own.begin(), own.end());
+    std::sort(all.begin(), all.end());
+    return all;
+}
+
+static void one_vertex_a_fan(Draft &surface, Task &task)
 {
     Mesh &mesh = surface.mesh;
-    Vector<bool> seen(surface.twin.size(), false), taken(mesh.positions.size(), false);
     Vector<uint32_t> fan;
-    for (uint32_t c = 0; c < surface.twin.size(); ++c) {
-        if (seen[c])
-            continue;
+    for (uint32_t c : further_fans(surface, task)) {
         fan_of(surface.twin, c, fan);
-        uint32_t v = start_of(mesh, c);
-        uint32_t own = taken[v] ? uint32_t(mesh.positions.size()) : v;
-        if (own == v)
-            taken[v] = true;
-        else
-            mesh.positions.push_back(Vec3d(mesh.positions[v]));
-        for (uint32_t corner : fan) {
-            seen[corner] = true;
+        const auto own = uint32_t(mesh.positions.size());
+        mesh.positions.push_back(Vec3d(mesh.positions[start_of(mesh, c)]));
+        for (uint32_t corner : fan)
             mesh.triangles[corner / 3][corner % 3] = own;
-        }
     }
 }
 
@@ -75,10 +94,10 @@ template <class Visit> static void for_each_suspect_edge(const Draft &surface, V
  * tells them apart. All sides of such an edge are parted. Each fan around an end of it then has the
  * edge at its two ends only; where these are still the same edge they close the fan, and as a fan
  * winds one way they fit. */
-void split_fans(Draft &surface)
+void split_fans(Draft &surface, Task &task)
 {
     Vector<uint32_t> &twin = surface.twin;
-    one_vertex_a_fan(surface);
+    one_vertex_a_fan(surface, task);
     bool parted = false;
     for_each_suspect_edge(surface, [&](const Vector<uint32_t> &edge) {
         bool clear = edge.size() == 1 || (edge.size() == 2 && twin[edge[0]] == edge[1]);
@@ -90,7 +109,7 @@ void split_fans(Draft &surface)
     });
     if (!parted)
         return;
-    one_vertex_a_fan(surface);
+    one_vertex_a_fan(surface, task);
     for_each_suspect_edge(surface, [&](const Vector<uint32_t> &edge) {
         if (edge.size() == 2) {
             twin[edge[0]] = edge[1];

@@ -81,11 +81,15 @@ static uint64_t fan_normals(Mesh &mesh, const Draft &surface, const Vector<Vec3f
 void make_normals(Draft &surface, Task &task)
 {
     Mesh &mesh = surface.mesh;
+    constexpr size_t LEAST = 1 << 12;
     bool from_source = !mesh.normals.empty();
     mesh.normals.resize(3 * mesh.triangles.size());
     Vector<Vec3f> faces(mesh.triangles.size());
-    for (size_t t = 0; t < faces.size(); ++t)
-        faces[t] = Vec3f(normalize(mesh.area_vector(t)));
+    const size_t parts = task.parts(faces.size(), LEAST);
+    task.in_parts(faces.size(), parts, [&](size_t, size_t from, size_t to) {
+        for (size_t t = from; t < to; ++t)
+            faces[t] = Vec3f(normalize(mesh.area_vector(t)));
+    });
     Vector<uint32_t> corner_of(mesh.positions.size());
     for (uint32_t c = uint32_t(surface.twin.size()); c-- > 0;)
         corner_of[start_of(mesh, c)] = c;

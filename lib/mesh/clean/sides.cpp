@@ -145,13 +145,14 @@ void choose_sides(Draft &surface, bool cut, Task &task, CleanReport &report)
         double area = 0, gaps = 0;
         for (size_t i = from; i < to; ++i) {
             uint32_t t = components.order[i];
-            area += length(surface.mesh.area_vector(t)) / 2;
             for (uint32_t h = 3 * t; h < 3 * t + 3; ++h)
                 if (surface.twin[h] == NO_EDGE) {
                     ++borders;
                     gaps += seen[h] ? 0 : gap_at(surface, h, seen);
                 }
         }
+        for (size_t i = from; i < to && gaps > SMALL_GAPS * area; ++i)
+            area += length(surface.mesh.area_vector(components.order[i])) / 2;
         closed[c] = gaps <= SMALL_GAPS * area;
         report.boundary_edges += borders;
         surface.open_components += !closed[c] && !cut;

@@ -69,15 +69,21 @@ static Fate fate_of(const Mesh &mesh, size_t t)
     return dot(area, area) > std::max(DBL_MIN, longest * height * height) ? KEEP : DEGENERATE;
 }
 
-void drop_invalid(Mesh &mesh, CleanReport &report)
+static bool all_kept(const Vector<uint8_t> &fates)
 {
+    return std::all_of(fates.begin(), fates.end(), [](uint8_t fate) { return fate == KEEP; });
+}
+
+void drop_invalid(Mesh &mesh, Task &task, CleanReport &report)
+{
+    constexpr size_t LEAST = 1 << 12;
     Vector<uint8_t> fates(mesh.triangles.size());
-    bool all_kept = true;
-    for (size_t t = 0; t < fates.size(); ++t) {
-        fates[t] = fate_of(mesh, t);
-        all_kept = all_kept && fates[t] == KEEP;
-    }
-    if (!all_kept)
+    const size_t parts = task.parts(fates.size(), LEAST);
+    task.in_parts(fates.size(), parts, [&](size_t, size_t from, size_t to) {
+        for (size_t t = from; t < to; ++t)
+            fates[t] = fate_of(mesh, t);
+    });
+    if (!all_kept(fates))
         drop(mesh, fates, report);
 }
 
@@ -92,31 +98,54 @@ static uint64_t hash_position(const Vec3d &p)
     return h * 0xc4ceb9fe1a85ec53u >> 20;
 }
 
-/* An open-addressed table of vertex numbers, at most half full. */
-void weld(Mesh &mesh)
+/* For each position one that is equal, the same for all of these: which one is chance. An
+ * open-addressed table, at most half full. Only finite positions: what equals nothing fills it. */
+static Vector<uint32_t> equal_positions(const Vector<Vec3d> &positions, Task *task)
 {
-    size_t bound = std::min(mesh.positions.size(), 3 * mesh.triangles.size());
     size_t capacity = 16;
-    while (capacity < 2 * bound)
+    while (capacity < 2 * positions.size())
         capacity *= 2;
-    Vector<uint32_t> table(capacity, NO_EDGE), number(mesh.positions.size(), NO_EDGE);
+    /* Vertices plus 1, so that a table of zeros is empty. */
+    Vector<std::atomic<uint32_t>> table(capacity);
+    Vector<uint32_t> equal(positions.size(), NO_EDGE);
+    auto look_up = [&](size_t, size_t from, size_t to) {
+        for (size_t v = from; v < to; ++v) {
+            cancel_point();
+            const Vec3d p = positions[v] + Vec3d(0, 0, 0); /* makes -0 and 0 the same bits */
+            if (!is_finite(p))
+                continue;
+            for (size_t slot = hash_position(p); equal[v] == NO_EDGE; ++slot) {
+                uint32_t other = 0; /* taken by whoever is first */
+                table[slot & (capacity - 1)].compare_exchange_strong(
+                    other, uint32_t(v + 1), std::memory_order_relaxed);
+                other = other ? other - 1 : uint32_t(v);
+                if (positions[other] == p)
+                    equal[v] = other;
+            }
+        }
+    };
+    constexpr size_t LEAST = 1 << 12;
+    if (task)
+        task->in_parts(positions.size(), task->parts(positions.size(), LEAST), look_up);
+    else
+        look_up(0, 0, positions.size());
+    return equal;
+}
+
+void weld(Mesh &mesh, Task *task)
+{
+    const Vector<uint32_t> equal = equal_positions(mesh.positions, task);
+    Vector<uint32_t> number(mesh.positions.size(), NO_EDGE);
     Vector<Vec3d> welded;
     for (auto &triangle : mesh.triangles) {
         cancel_point();
         for (uint32_t &v : triangle) {
-            if (number[v] == NO_EDGE) {
-                /* adding zero makes -0 and 0 the same bits */
-                const Vec3d p = mesh.positions[v] + Vec3d(0, 0, 0);
-                size_t slot = hash_position(p) & (capacity - 1);
-                while (table[slot] != NO_EDGE && welded[table[slot]] != p)
-                    slot = (slot + 1) & (capacity - 1);
-                if (table[slot] == NO_EDGE) {
-                    table[slot] = uint32_t(welded.size());
-                    welded.push_back(p);
-                }
-                number[v] = table[slot];
+            uint32_t &own = number[equal[v]];
+            if (own == NO_EDGE) {
+                own = uint32_t(welded.size());
+                welded.push_back(mesh.positions[v] + Vec3d(0, 0, 0));
             }
-            v = number[v];
+            v = own;
         }
     }
     welded.shrink_to_fit();
@@ -135,32 +164,37 @@ struct TriangleEntry {
     }
 };
 
-/* A counting sort by the lowest vertex leaves short lists; end[v] is where that of v ends. */
-static Vector<TriangleEntry> list_triangles(const Mesh &mesh, Vector<uint32_t> &end)
+/* Those whose lowest vertex is in [begin, after). A counting sort by it leaves short lists; end[v]
+ * is where that of begin + v ends. */
+static Vector<TriangleEntry> list_triangles(const Mesh &mesh, size_t begin, size_t after,
+                                            Vector<uint32_t> &end)
 {
-    end.assign(mesh.positions.size() + 1, 0);
+    end.assign(after - begin + 1, 0);
     for (const auto &v : mesh.triangles)
-        ++end[std::min({v[0], v[1], v[2]}) + 1];
+        if (const size_t low = std::min({v[0], v[1], v[2]}) - begin; low < after - begin)
+            ++end[low + 1];
     for (size_t v = 1; v < end.size(); ++v)
         end[v] += end[v - 1];
-    Vector<TriangleEntry> entries(mesh.triangles.size());
-    for (size_t t = 0; t < entries.size(); ++t) {
+    Vector<TriangleEntry> entries(end.back());
+    for (size_t t = 0; t < mesh.triangles.size(); ++t) {
         auto v = mesh.triangles[t];
-        bool odd = (v[0] > v[1]) ^ (v[1] > v[2]) ^ (v[0] > v[2]);
-        std::sort(v.begin(), v.end());
-        entries[end[v[0]]++] = {v[1], v[2], uint32_t(t), odd};
+        if (const size_t low = std::min({v[0], v[1], v[2]}) - begin; low < after - begin) {
+            bool odd = (v[0] > v[1]) ^ (v[1] > v[2]) ^ (v[0] > v[2]);
+            std::sort(v.begin(), v.end());
+            entries[end[low]++] = {v[1], v[2], uint32_t(t), odd};
+        }
     }
     return entries;
 }
 
-Vector<uint8_t> drop_duplicates(Mesh &mesh, CleanReport &report)
+/* Of the triangles whose lowest vertex is in [begin, after). */
+static void find_duplicates(const Mesh &mesh, size_t begin, size_t after, Vector<uint8_t> &fates,
+                            Vector<uint8_t> &thin)
 {
     Vector<uint32_t> end;
-    Vector<TriangleEntry> entries = list_triangles(mesh, end);
-    Vector<uint8_t> fates(entries.size(), KEEP), thin(entries.size(), 0);
-    bool all_kept = true;
+    Vector<TriangleEntry> entries = list_triangles(mesh, begin, after, end);
     TriangleEntry *from = entries.data();
-    for (size_t v = 0; v < mesh.positions.size(); ++v) {
+    for (size_t v = 0; v < after - begin; ++v) {
         TriangleEntry *to = entries.data() + end[v];
         std::sort(from, to);
         while (from != to) {
@@ -175,10 +209,18 @@ Vector<uint8_t> drop_duplicates(Mesh &mesh, CleanReport &report)
             for (TriangleEntry *e = first; e != from; ++e)
                 fates[e->triangle] = e == keeper ? KEEP : DUPLICATE;
             thin[keeper->triangle] = 2 * odd == count;
-            all_kept = all_kept && count == 1;
         }
     }
-    if (all_kept)
+}
+
+Vector<uint8_t> drop_duplicates(Mesh &mesh, Task &task, CleanReport &report)
+{
+    Vector<uint8_t> fates(mesh.triangles.size(), KEEP), thin(fates.size(), 0);
+    const size_t vertices = mesh.positions.size();
+    task.in_parts(vertices, vertex_parts(mesh, task), [&](size_t, size_t from, size_t to) {
+        find_duplicates(mesh, from, to, fates, thin);
+    });
+    if (all_kept(fates))
         return thin;
     size_t kept = 0;
     for (size_t t = 0; t < fates.size(); ++t)
