@@ -94,11 +94,14 @@ public:
           fixed_(inverse_(surface.mesh.positions[0])), pitch_(pitch)
     {
     }
-    Vec3d corner(uint32_t local, int k) const
+    Vec3d in_frame(uint32_t local, int k) const
     {
-        Vec3d p = inverse_(surface_.mesh.position(region_.triangles[local], k));
-        return Vec3d((p.x - fixed_.x) / pitch_, (p.y - fixed_.y) / pitch_, p.z);
+        return inverse_(surface_.mesh.position(region_.triangles[local], k));
     }
+    /* Of a point in the frame's coordinates, one of them: never falls where that rises. */
+    double in_texels(const Vec3d &p, int axis) const { return (p[axis] - fixed_[axis]) / pitch_; }
+    Vec3d in_texels(const Vec3d &p) const { return {in_texels(p, 0), in_texels(p, 1), p.z}; }
+    Vec3d corner(uint32_t local, int k) const { return in_texels(in_frame(local, k)); }
     /* Whether surface within `reach` texels of (u, v) leads from one triangle to another. */
     bool joined(uint32_t from, uint32_t to, double u, double v, double reach) const
     {
@@ -204,10 +207,10 @@ LayerGrid make_layer_grid(const Surface &surface, const Region &region, const Fr
 {
     const FlatRegion flat(surface, region, frame, pitch);
     Vector<Vec3d> kept(3 * std::min(region.size(), MAX_KEPT));
-    double from[2] = {INFINITY, INFINITY}, to[2] = {-INFINITY, -INFINITY};
+    Vec3d from(INFINITY, INFINITY, 0), to = -from;
     for (uint32_t local = 0; local < region.size(); ++local)
         for (int k = 0; k < 3; ++k) {
-            const Vec3d p = flat.corner(local, k);
+            const Vec3d p = flat.in_frame(local, k);
             if (local < MAX_KEPT)
                 kept[3 * local + uint32_t(k)] = p;
             for (int a = 0; a < 2; ++a) {
@@ -217,8 +220,8 @@ LayerGrid make_layer_grid(const Surface &surface, const Region &region, const Fr
         }
     int low[2], high[2];
     for (int a = 0; a < 2; ++a) {
-        low[a] = int(std::floor(from[a]));
-        high[a] = int(std::floor(to[a])) + 1;
+        low[a] = int(std::floor(flat.in_texels(from, a)));
+        high[a] = int(std::floor(flat.in_texels(to, a))) + 1;
     }
     LayerGrid grid = blank_grid(low, high);
     constexpr size_t SAMPLE_TURNS = 8; /* of a short loop, that take as long as a sample */
@@ -226,7 +229,8 @@ LayerGrid make_layer_grid(const Surface &surface, const Region &region, const Fr
     for (uint32_t local = 0; local < region.size(); ++local) {
         Vec3d p[3];
         for (int k = 0; k < 3; ++k)
-            p[k] = (local < MAX_KEPT ? kept[3 * local + uint32_t(k)] : flat.corner(local, k)) -
+            p[k] = flat.in_texels(local < MAX_KEPT ? kept[3 * local + uint32_t(k)]
+                                                   : flat.in_frame(local, k)) -
                    Vec3d(low[0], low[1], 0);
         raster_centres(p, grid.size[0], grid.size[1], [&](int i, int j, double depth) {
             join(grid.samples[size_t(j) * size_t(grid.size[0]) + size_t(i)],

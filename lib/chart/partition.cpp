@@ -80,6 +80,13 @@ bool is_two_sided(const Mesh &mesh, const Chart &chart)
     return both > TWO_SIDED_AREA * area;
 }
 
+void find_two_sided(const Mesh &mesh, Task &task, Partition &out)
+{
+    task.parallel(out.charts.size(), [&](size_t i) {
+        out.charts[i].two_sided = is_two_sided(mesh, out.charts[i]);
+    }, 1, 1);
+}
+
 Vector<Chart> whole_charts(Vector<Region> regions, const Vector<Frame> &frames,
                            const Partition &partition)
 {
@@ -133,8 +140,7 @@ void make_charts(Surface surface, const ChartOptions &options, uint32_t count, T
                     options.one_density};
     out.charts = cut ? cut_charts(surface, std::move(regions), frames, plan, task)
                      : whole_charts(std::move(regions), frames, out);
-    for (Chart &chart : out.charts)
-        chart.two_sided = is_two_sided(surface.mesh, chart);
+    find_two_sided(surface.mesh, task, out);
 }
 
 } // namespace
@@ -189,8 +195,7 @@ static void make_relief_charts(const Surface &surface, const ChartOptions &optio
     task.begin("frame");
     report_final(surface, regions, frames, task, out);
     out.charts = whole_charts(std::move(regions), frames, out);
-    for (Chart &chart : out.charts)
-        chart.two_sided = is_two_sided(surface.mesh, chart);
+    find_two_sided(surface.mesh, task, out);
 }
 
 static Partition partition_by(PartitionMethod method, const Mesh &mesh,

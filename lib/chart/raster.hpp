@@ -52,6 +52,19 @@ inline Row narrow_row(double first, int count, double dy, const double u[2], con
     return row;
 }
 
+/* The first and the last of `count` texels with a centre from low to high; false if there is
+ * none. */
+inline bool centres_between(double low, double high, int count, int &first, int &last)
+{
+    low = std::max(0., low - 0.5);
+    high = std::clamp(high - 0.5, -1., count - 1.);
+    first = int(low);
+    first += first < low;
+    last = int(high);
+    last -= last > high;
+    return first <= last;
+}
+
 /* Calls visit(i, j, depth) for the texel centres in a triangle, edges included. Corners are in
  * texels, texel (i, j) from i to i + 1 and j to j + 1; depths are the corners' z. */
 template <class Visit>
@@ -59,15 +72,13 @@ void raster_centres(const Vec3d corner[3], int width, int height, Visit visit)
 {
     cancel_point();
     const Vec3d &a = corner[0], &b = corner[1], &c = corner[2];
+    int i0, i1, j0, j1; /* most triangles of fine models are between the centres */
+    if (!centres_between(std::min({a.x, b.x, c.x}), std::max({a.x, b.x, c.x}), width, i0, i1) ||
+        !centres_between(std::min({a.y, b.y, c.y}), std::max({a.y, b.y, c.y}), height, j0, j1))
+        return;
     double area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
     if (area == 0)
         return;
-    auto first = [](double x) { return int(std::max(0., std::ceil(x - 0.5))); };
-    auto last = [](double x, int size) {
-        return int(std::floor(std::clamp(x - 0.5, -1., size - 1.)));
-    };
-    int i0 = first(std::min({a.x, b.x, c.x})), i1 = last(std::max({a.x, b.x, c.x}), width);
-    int j0 = first(std::min({a.y, b.y, c.y})), j1 = last(std::max({a.y, b.y, c.y}), height);
     const double u[2] = {b.x - a.x, b.y - a.y}, v[2] = {c.x - a.x, c.y - a.y};
     for (int j = j0; j <= j1; ++j) {
         const Row row = narrow_row(i0 + 0.5 - a.x, i1 - i0 + 1, j + 0.5 - a.y, u, v, area, 0);

@@ -6,8 +6,6 @@
 #include "chart/cuts/tree.hpp"
 #include "chart/frame.hpp"
 
-#include <numeric>
-
 namespace gtx {
 
 namespace {
@@ -35,42 +33,39 @@ unsigned cells_of(const CutNode &node, int axis)
 struct Piece {
     uint32_t triangle;
     float low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY}, middle[2] = {0, 0};
+
+    bool meets(const Rect &region) const
+    {
+        bool meets = true;
+        for (int a = 0; a < 2; ++a)
+            meets = meets && high[a] >= float(region.low[a]) - MARGIN &&
+                    low[a] <= float(region.high[a]) + MARGIN;
+        return meets;
+    }
+};
+
+/* What of a chart meets one of its patches; some that does is another's own. */
+struct Members {
+    Vector<uint32_t> triangles;
+    uint64_t own = 0;
 };
 
 class PatchBuilder {
 public:
     PatchBuilder(const Surface &surface, const Frame &frame, const CutPlan &plan,
                  const CutTree &tree)
-        : surface_(surface), frame_(frame), plan_(plan), pitch_(plan.pitch), tree_(tree)
+        : surface_(surface), frame_(frame), plan_(plan), pitch_(plan.pitch), tree_(tree),
+          inverse_(frame), patch_of_(tree.nodes.size())
     {
+        list_leaves(0);
     }
 
-    Vector<Chart> build(const Region &region)
-    {
-        FrameInverse inverse(frame_);
-        pieces_.reserve(region.size());
-        Vector<uint32_t> all(region.size());
-        std::iota(all.begin(), all.end(), 0u);
-        for (uint32_t t : region.triangles) {
-            Piece piece = {t};
-            for (int k = 0; k < 3; ++k) {
-                Vec3d p = inverse(surface_.mesh.position(t, k));
-                for (int a = 0; a < 2; ++a) {
-                    float x = float((p[a] - tree_.relief.corner[a]) / pitch_);
-                    piece.low[a] = std::min(piece.low[a], x);
-                    piece.high[a] = std::max(piece.high[a], x);
-                    piece.middle[a] += x / 3;
-                }
-            }
-            pieces_.push_back(piece);
-        }
-        descend(tree_.nodes[0], std::move(all));
-        return std::move(out_);
-    }
+    Vector<Chart> build(const Region &region, Task &task);
 
 private:
-    void descend(const CutNode &node, Vector<uint32_t> pieces);
-    void make_patch(const CutNode &node, const Vector<uint32_t> &pieces);
+    void list_leaves(size_t node);
+    Piece piece_of(uint32_t triangle) const;
+    void descend(size_t node, const Piece &piece, Vector<Members> &patches) const;
     bool is_own(const CutNode &node, const Piece &piece) const;
     void lay_frame(const CutNode &node, Chart &chart) const;
     unsigned fitted_cells(const CutNode &node, int axis) const;
@@ -81,32 +76,80 @@ private:
     const CutPlan &plan_;
     const double pitch_;
     const CutTree &tree_;
-    Vector<Piece> pieces_;
-    Vector<Chart> out_;
+    const FrameInverse inverse_;
+    Vector<uint32_t> patch_of_; /* of a node that is a leaf */
+    Vector<size_t> leaves_;
 };
 
-void PatchBuilder::descend(const CutNode &node, Vector<uint32_t> pieces)
+void PatchBuilder::list_leaves(size_t node)
 {
-    if (!node.divided) {
-        make_patch(node, pieces);
+    if (!tree_.nodes[node].divided) {
+        patch_of_[node] = uint32_t(leaves_.size());
+        leaves_.push_back(node);
         return;
     }
-    Vector<uint32_t> inside[2];
-    for (int side = 0; side < 2; ++side) {
-        const Rect &half = tree_.nodes[size_t(node.child[side])].region;
-        for (uint32_t index : pieces) {
-            const Piece &piece = pieces_[index];
-            bool meets = true;
-            for (int a = 0; a < 2; ++a)
-                meets = meets && piece.high[a] >= float(half.low[a]) - MARGIN &&
-                        piece.low[a] <= float(half.high[a]) + MARGIN;
-            if (meets)
-                inside[side].push_back(index);
+    for (int child : tree_.nodes[node].child)
+        list_leaves(size_t(child));
+}
+
+Piece PatchBuilder::piece_of(uint32_t triangle) const
+{
+    Piece piece = {triangle};
+    for (int k = 0; k < 3; ++k) {
+        Vec3d p = inverse_(surface_.mesh.position(triangle, k));
+        for (int a = 0; a < 2; ++a) {
+            float x = float((p[a] - tree_.relief.corner[a]) / pitch_);
+            piece.low[a] = std::min(piece.low[a], x);
+            piece.high[a] = std::max(piece.high[a], x);
+            piece.middle[a] += x / 3;
         }
     }
-    pieces = {}; /* of a terrain they are many */
-    for (int side = 0; side < 2; ++side)
-        descend(tree_.nodes[size_t(node.child[side])], std::move(inside[side]));
+    return piece;
+}
+
+void PatchBuilder::descend(size_t node, const Piece &piece, Vector<Members> &patches) const
+{
+    if (!tree_.nodes[node].divided) {
+        Members &patch = patches[patch_of_[node]];
+        patch.triangles.push_back(piece.triangle);
+        patch.own += is_own(tree_.nodes[node], piece);
+        return;
+    }
+    for (int child : tree_.nodes[node].child)
+        if (piece.meets(tree_.nodes[size_t(child)].region))
+            descend(size_t(child), piece, patches);
+}
+
+Vector<Chart> PatchBuilder::build(const Region &region, Task &task)
+{
+    constexpr size_t LARGE = 1 << 16; /* changes no byte */
+    Vector<Vector<Members>> parts(task.parts(region.size(), LARGE));
+    task.in_parts(region.size(), parts.size(), [&](size_t part, size_t from, size_t to) {
+        Vector<Members> patches(leaves_.size());
+        for (size_t i = from; i < to; ++i) {
+            cancel_point();
+            descend(0, piece_of(region.triangles[i]), patches);
+        }
+        parts[part] = std::move(patches);
+    });
+    Vector<Chart> charts(leaves_.size());
+    auto make_patch = [&](size_t patch) {
+        Chart &chart = charts[patch];
+        for (Vector<Members> &part : parts) {
+            const Members from = std::move(part[patch]);
+            chart.triangles.insert(chart.triangles.end(), from.triangles.begin(),
+                                   from.triangles.end());
+            chart.source_triangles += from.own;
+        }
+        lay_frame(tree_.nodes[leaves_[patch]], chart);
+        clip(tree_.nodes[leaves_[patch]], chart);
+    };
+    if (parts.size() > 1)
+        task.parallel(charts.size(), make_patch);
+    else
+        for (size_t patch = 0; patch < charts.size(); ++patch)
+            make_patch(patch);
+    return charts;
 }
 
 /* Whether its centre lies in the node's region, clamped to the grid against rounding. */
@@ -170,18 +213,6 @@ void PatchBuilder::clip(const CutNode &node, Chart &chart) const
     }
 }
 
-void PatchBuilder::make_patch(const CutNode &node, const Vector<uint32_t> &pieces)
-{
-    Chart chart;
-    for (uint32_t index : pieces) {
-        chart.triangles.push_back(pieces_[index].triangle);
-        chart.source_triangles += is_own(node, pieces_[index]);
-    }
-    lay_frame(node, chart);
-    clip(node, chart);
-    out_.push_back(std::move(chart));
-}
-
 /* Of a chart that stays whole. */
 void set_cells(const CutNode &node, Chart &chart)
 {
@@ -237,7 +268,7 @@ Vector<Chart> cut_charts(const Surface &surface, Vector<Region> regions,
     Vector<Vector<Chart>> cut(regions.size());
     for_each_region(regions, task, [&](size_t i) {
         if (trees[i].nodes[0].divided) {
-            cut[i] = PatchBuilder(surface, frames[i], plan, trees[i]).build(regions[i]);
+            cut[i] = PatchBuilder(surface, frames[i], plan, trees[i]).build(regions[i], task);
         } else {
             cut[i].resize(1);
             cut[i][0].source_triangles = regions[i].size();
@@ -249,10 +280,10 @@ Vector<Chart> cut_charts(const Surface &surface, Vector<Region> regions,
     }, 0.8, 1);
     Vector<Chart> out;
     for (Vector<Chart> &charts : cut)
-        for (Chart &chart : charts) {
-            std::sort(chart.triangles.begin(), chart.triangles.end());
-            out.push_back(std::move(chart));
-        }
+        std::move(charts.begin(), charts.end(), std::back_inserter(out));
+    task.parallel(out.size(), [&](size_t i) {
+        std::sort(out[i].triangles.begin(), out[i].triangles.end());
+    }, 1, 1);
     return out;
 }
 
