@@ -36,9 +36,9 @@ constexpr double MAX_LOOKS = 1024;
 class Attachment {
 public:
     Attachment(Surface &surface, const Bounds &bounds, Vector<Region> &regions,
-               Vector<Frame> &frames)
-        : surface_(surface), bounds_(bounds), regions_(regions), frames_(frames), grid_of_(frames),
-          grids_(regions.size()), age_(regions.size()),
+               Vector<Frame> &frames, Task &task)
+        : surface_(surface), bounds_(bounds), regions_(regions), frames_(frames), task_(task),
+          grid_of_(frames), grids_(regions.size()), age_(regions.size()),
           looks_left_(MAX_LOOKS * double(surface.facets.size()))
     {
     }
@@ -69,6 +69,7 @@ private:
     const Bounds &bounds_;
     Vector<Region> &regions_;
     Vector<Frame> &frames_;
+    Task &task_;
     Vector<uint32_t> candidates_;                     /* largest first */
     struct Near {
         uint32_t candidate, region;
@@ -195,8 +196,8 @@ bool Attachment::try_target(uint32_t candidate, uint32_t target, bool tiny)
         return false;
     LayerGrid &grid = grids_[target];
     if (grid.samples.empty())
-        grid = make_layer_grid(surface_, regions_[target], grid_of_[target], bounds_.pitch);
-    LayerGrid own = make_layer_grid(surface_, added, grid_of_[target], bounds_.pitch);
+        grid = make_layer_grid(surface_, regions_[target], grid_of_[target], bounds_.pitch, task_);
+    LayerGrid own = make_layer_grid(surface_, added, grid_of_[target], bounds_.pitch, task_);
     size_t doubled;
     if (fold_together(grid, own, layer_rule(surface_, bounds_.pitch), doubled) ||
         (doubled && !tiny))
@@ -268,9 +269,9 @@ void Attachment::run()
 } // namespace
 
 void attach_islands(Surface &surface, const Bounds &bounds, Vector<Region> &regions,
-                    Vector<Frame> &frames)
+                    Vector<Frame> &frames, Task &task)
 {
-    Attachment(surface, bounds, regions, frames).run();
+    Attachment(surface, bounds, regions, frames, task).run();
 }
 
 } // namespace gtx

@@ -9,6 +9,6 @@ namespace gtx {
  * texels are saved. Target charts keep their axes, and may then have several connected pieces. What
  * is smaller than a texel or two and faces away becomes junk there. */
 void attach_islands(Surface &surface, const Bounds &bounds, Vector<Region> &regions,
-                    Vector<Frame> &frames);
+                    Vector<Frame> &frames, Task &task);
 
 } // namespace gtx

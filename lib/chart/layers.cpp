@@ -203,47 +203,68 @@ void LayerGrid::add(const LayerGrid &other)
 }
 
 LayerGrid make_layer_grid(const Surface &surface, const Region &region, const Frame &frame,
-                          double pitch)
+                          double pitch, Task &task)
 {
+    constexpr size_t LARGE = 1 << 16; /* changes no byte */
+    const size_t parts = std::min<size_t>(task.threads(), task.parts(region.size(), LARGE));
     const FlatRegion flat(surface, region, frame, pitch);
     Vector<Vec3d> kept(3 * std::min(region.size(), MAX_KEPT));
-    Vec3d from(INFINITY, INFINITY, 0), to = -from;
-    for (uint32_t local = 0; local < region.size(); ++local)
-        for (int k = 0; k < 3; ++k) {
-            const Vec3d p = flat.in_frame(local, k);
-            if (local < MAX_KEPT)
-                kept[3 * local + uint32_t(k)] = p;
-            for (int a = 0; a < 2; ++a) {
-                from[a] = std::min(from[a], p[a]);
-                to[a] = std::max(to[a], p[a]);
+    struct Box {
+        Vec3d low = {INFINITY, INFINITY, 0}, high = -low;
+    };
+    Vector<Box> boxes(parts);
+    task.in_parts(region.size(), parts, [&](size_t part, size_t from, size_t to) {
+        Box box;
+        for (size_t local = from; local < to; ++local)
+            for (size_t k = 0; k < 3; ++k) {
+                const Vec3d p = flat.in_frame(uint32_t(local), int(k));
+                if (local < MAX_KEPT)
+                    kept[3 * local + k] = p;
+                for (int a = 0; a < 2; ++a) {
+                    box.low[a] = std::min(box.low[a], p[a]);
+                    box.high[a] = std::max(box.high[a], p[a]);
+                }
             }
-        }
+        boxes[part] = box;
+    });
     int low[2], high[2];
     for (int a = 0; a < 2; ++a) {
-        low[a] = int(std::floor(flat.in_texels(from, a)));
-        high[a] = int(std::floor(flat.in_texels(to, a))) + 1;
+        for (const Box &box : boxes) {
+            boxes[0].low[a] = std::min(boxes[0].low[a], box.low[a]);
+            boxes[0].high[a] = std::max(boxes[0].high[a], box.high[a]);
+        }
+        low[a] = int(std::floor(flat.in_texels(boxes[0].low, a)));
+        high[a] = int(std::floor(flat.in_texels(boxes[0].high, a))) + 1;
     }
-    LayerGrid grid = blank_grid(low, high);
-    constexpr size_t SAMPLE_TURNS = 8; /* of a short loop, that take as long as a sample */
-    cancel_point(SAMPLE_TURNS * grid.samples.size());
-    for (uint32_t local = 0; local < region.size(); ++local) {
-        Vec3d p[3];
-        for (int k = 0; k < 3; ++k)
-            p[k] = flat.in_texels(local < MAX_KEPT ? kept[3 * local + uint32_t(k)]
-                                                   : flat.in_frame(local, k)) -
-                   Vec3d(low[0], low[1], 0);
-        raster_centres(p, grid.size[0], grid.size[1], [&](int i, int j, double depth) {
-            join(grid.samples[size_t(j) * size_t(grid.size[0]) + size_t(i)],
-                 {float(depth), float(depth), local, local});
-        });
-    }
-    return grid;
+    Vector<LayerGrid> grids(parts);
+    task.in_parts(region.size(), parts, [&](size_t part, size_t from, size_t to) {
+        LayerGrid grid = blank_grid(low, high);
+        constexpr size_t SAMPLE_TURNS = 8; /* of a short loop, that take as long as a sample */
+        cancel_point(SAMPLE_TURNS * grid.samples.size());
+        for (size_t local = from; local < to; ++local) {
+            const auto triangle = uint32_t(local);
+            Vec3d p[3];
+            for (size_t k = 0; k < 3; ++k)
+                p[k] = flat.in_texels(local < MAX_KEPT ? kept[3 * local + k]
+                                                       : flat.in_frame(triangle, int(k))) -
+                       Vec3d(low[0], low[1], 0);
+            raster_centres(p, grid.size[0], grid.size[1], [&](int i, int j, double depth) {
+                join(grid.samples[size_t(j) * size_t(grid.size[0]) + size_t(i)],
+                     {float(depth), float(depth), triangle, triangle});
+            });
+        }
+        grids[part] = std::move(grid);
+    });
+    for (size_t part = 1; part < parts; ++part)
+        grids[0].add(grids[part]);
+    return std::move(grids[0]);
 }
 
-Layers find_layers(const Surface &surface, const Region &region, const Frame &frame, double pitch)
+Layers find_layers(const Surface &surface, const Region &region, const Frame &frame, double pitch,
+                   Task &task)
 {
     const LayerRule rule = layer_rule(surface, pitch);
-    LayerGrid grid = make_layer_grid(surface, region, frame, pitch);
+    LayerGrid grid = make_layer_grid(surface, region, frame, pitch, task);
     Layers layers;
     for (const Sample &s : grid.samples)
         layers.samples += s.high >= s.low;

@@ -45,9 +45,10 @@ struct LayerGrid {
     void add(const LayerGrid &other);
 };
 LayerGrid make_layer_grid(const Surface &surface, const Region &region, const Frame &frame,
-                          double pitch);
+                          double pitch, Task &task);
 
-Layers find_layers(const Surface &surface, const Region &region, const Frame &frame, double pitch);
+Layers find_layers(const Surface &surface, const Region &region, const Frame &frame, double pitch,
+                   Task &task);
 
 /* Whether adding one grid to another makes a fold or a depth discontinuity; `doubled` counts the
  * texel centres that would be covered twice and are not yet. */

@@ -78,7 +78,7 @@ private:
     Vector<Offer> best_offers();
     bool too_steep(const Offer &offer, const Vec3d &z, double most) const;
     Region join(const Offer &offer);
-    Trial try_offer(const Offer &offer);
+    Trial try_offer(const Offer &offer, Task &task);
     void adopt(const Offer &offer, Trial &trial);
     double texels(const Region &region) const
     {
@@ -173,7 +173,7 @@ Region Merger::join(const Offer &offer)
     return out;
 }
 
-Trial Merger::try_offer(const Offer &offer)
+Trial Merger::try_offer(const Offer &offer, Task &task)
 {
     Trial trial;
     Vec3d sum;
@@ -188,7 +188,8 @@ Trial Merger::try_offer(const Offer &offer)
     trial.both = join(offer);
     const Vec3d z = chart_axis(surface_, trial.both.triangles, bounds_);
     Verdict verdict;
-    if (too_steep(offer, z, STEEP_SHARE) || !fits_along(surface_, trial.both, z, bounds_, verdict))
+    if (too_steep(offer, z, STEEP_SHARE) ||
+        !fits_along(surface_, trial.both, z, bounds_, task, verdict))
         return trial;
     trial.frame = verdict.frame;
     if (!verdict.pieces.empty()) {
@@ -248,7 +249,7 @@ Vector<Region> Merger::run(Task &task)
                 offer(a, b);
     for (Vector<Offer> best; !(best = best_offers()).empty();) {
         Vector<Trial> trials(best.size());
-        task.parallel(best.size(), [&](size_t i) { trials[i] = try_offer(best[i]); }, 0, 0);
+        task.parallel(best.size(), [&](size_t i) { trials[i] = try_offer(best[i], task); }, 0, 0);
         for (size_t i = 0; i < best.size(); ++i) {
             const auto [a, b] = std::pair(best[i].a, best[i].b);
             if (trials[i].fits)

@@ -125,7 +125,7 @@ void make_charts(Surface surface, const ChartOptions &options, uint32_t count, T
     if (surface.manifold)
         out.neighbours = from_first_edges(std::move(surface.whole.neighbours));
     surface.whole.neighbours = {};
-    attach_islands(surface, bounds, regions, frames);
+    attach_islands(surface, bounds, regions, frames, task);
     const unsigned side = std::max(options.resolution / options.grain, 1u) * options.grain;
     if (layers)
         gather_charts(surface, bounds, options.grain, side, regions, frames);

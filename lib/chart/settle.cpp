@@ -116,7 +116,7 @@ bool split_all(const Surface &surface, Vector<Region> &regions, Vector<Frame> &f
     while (!pending.empty()) {
         Vector<Verdict> verdicts(pending.size());
         for_each_region(pending, task, [&](size_t i) {
-            verdicts[i] = judge(surface, pending[i], bounds);
+            verdicts[i] = judge(surface, pending[i], bounds, task);
         }, 0.75, 1);
         Vector<Region> next;
         for (size_t i = 0; i < pending.size(); ++i) {

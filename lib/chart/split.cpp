@@ -39,7 +39,7 @@ struct Candidate {
 };
 
 Candidate try_axis(const Surface &surface, const Region &region, const Vec3d &z,
-                   const Bounds &bounds)
+                   const Bounds &bounds, Task &task)
 {
     constexpr size_t TURNS = 256; /* of a short loop, that take as long as a triangle */
     cancel_point(TURNS * region.size());
@@ -60,7 +60,7 @@ Candidate try_axis(const Surface &surface, const Region &region, const Vec3d &z,
     out.frame = make_frame(surface.mesh, region.triangles, z);
     if (!out.steep && !out.inverted && out.frame.extent[0] <= bounds.side &&
         out.frame.extent[1] <= bounds.side)
-        out.layers = find_layers(surface, region, out.frame, bounds.pitch);
+        out.layers = find_layers(surface, region, out.frame, bounds.pitch, task);
     return out;
 }
 
@@ -218,13 +218,13 @@ Vector<uint32_t> split_layers(const Surface &surface, const Region &region,
 
 /* Of a region that faces one of the directions; false where what is wrong is no matter of
  * layers. */
-bool judge_along(const Surface &surface, const Region &region, const Bounds &bounds,
+bool judge_along(const Surface &surface, const Region &region, const Bounds &bounds, Task &task,
                  Verdict &verdict)
 {
     const Vec3d z = chart_axis(surface, region.triangles, bounds);
-    if (fits_along(surface, region, z, bounds, verdict))
+    if (fits_along(surface, region, z, bounds, task, verdict))
         return true;
-    const Layers layers = try_axis(surface, region, z, bounds).layers;
+    const Layers layers = try_axis(surface, region, z, bounds, task).layers;
     for (auto *samples : {&layers.folds, &layers.discontinuities})
         if (!samples->empty()) {
             verdict = {{}, pieces_of(region, split_layers(surface, region, *samples))};
@@ -275,16 +275,16 @@ bool leans_back(const Surface &surface, uint32_t t, double facing, const Vec3d &
 }
 
 bool fits_along(const Surface &surface, const Region &region, const Vec3d &z, const Bounds &bounds,
-                Verdict &verdict)
+                Task &task, Verdict &verdict)
 {
-    Candidate candidate = try_axis(surface, region, z, bounds);
+    Candidate candidate = try_axis(surface, region, z, bounds, task);
     if (!candidate.fits())
         return false;
     verdict = accept(surface, region, candidate.frame, bounds.pitch);
     return true;
 }
 
-Verdict judge(const Surface &surface, const Region &region, const Bounds &bounds)
+Verdict judge(const Surface &surface, const Region &region, const Bounds &bounds, Task &task)
 {
     auto too_long = [&](const Frame &frame) {
         return region.size() > 1 && std::max(frame.extent[0], frame.extent[1]) > bounds.side;
@@ -292,10 +292,10 @@ Verdict judge(const Surface &surface, const Region &region, const Bounds &bounds
     auto try_kind = [&](bool cone) {
         const Vec3d z = cone ? cone_axis(surface, region.triangles)
                              : median_axis(surface.mesh, region.triangles);
-        return try_axis(surface, region, z, bounds);
+        return try_axis(surface, region, z, bounds, task);
     };
     Verdict along;
-    if (!bounds.directions.empty() && judge_along(surface, region, bounds, along))
+    if (!bounds.directions.empty() && judge_along(surface, region, bounds, task, along))
         return along;
     /* A triangle alone is a height map along its own normal, whatever its neighbours' are. */
     Candidate first = try_kind(bounds.cone && region.size() > 1);

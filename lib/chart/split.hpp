@@ -38,10 +38,10 @@ Vec3d chart_axis(const Surface &surface, const Vector<uint32_t> &triangles, cons
 /* Whether a region can be a chart along unit `z`, walls left out: if it has walls, the verdict's
  * `pieces` are they and the rest, which have no axes yet. */
 bool fits_along(const Surface &surface, const Region &region, const Vec3d &z, const Bounds &bounds,
-                Verdict &verdict);
+                Task &task, Verdict &verdict);
 
 /* Regions are connected. A region of one triangle is always a chart. */
-Verdict judge(const Surface &surface, const Region &region, const Bounds &bounds);
+Verdict judge(const Surface &surface, const Region &region, const Bounds &bounds, Task &task);
 
 /* Core triangles with n.z <= 0 and a projected area over a texel, junk left out. */
 bool is_inverted(const Surface &surface, uint32_t triangle, const Vec3d &z, double pitch);

@@ -47,7 +47,7 @@ static Merged merge(const Mesh &mesh, double pitch,
     out.loose = merge_charts(surface, bounds, out.regions, out.frames, task);
     assert_int_equal(out.frames.size(), out.regions.size());
     for (size_t i = 0; i < out.regions.size(); ++i) {
-        out.layers.push_back(find_layers(surface, out.regions[i], out.frames[i], pitch));
+        out.layers.push_back(find_layers(surface, out.regions[i], out.frames[i], pitch, task));
         out.area.push_back(0);
         for (uint32_t t : out.regions[i].triangles)
             out.area.back() += length(mesh.area_vector(t)) / 2;

@@ -22,9 +22,9 @@ constexpr double SAMPLES[4][3] = {
 /* What is in front, along one direction. */
 class View {
 public:
-    View(const Surface &surface, const Vec3d &z, double pitch)
+    View(const Surface &surface, const Vec3d &z, double pitch, Task &task)
         : surface_(surface), pitch_(pitch), frame_(plain_frame(surface, z)), inverse_(frame_),
-          grid_(make_layer_grid(surface, surface.whole, frame_, pitch))
+          grid_(make_layer_grid(surface, surface.whole, frame_, pitch, task))
     {
     }
 
@@ -86,7 +86,7 @@ Vector<uint32_t> see_from_sides(const Surface &surface, unsigned resolution, Tas
     Vector<uint32_t> label(surface.facets.size(), uint32_t(sides.size()));
     Vector<double> best(label.size());
     for (uint32_t side = 0; side < sides.size(); ++side) {
-        const View view(surface, sides[side], pitch);
+        const View view(surface, sides[side], pitch, task);
         for (uint32_t t = 0; t < label.size(); ++t) {
             cancel_point();
             const double sees = view.sees(t);

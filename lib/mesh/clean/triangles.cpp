@@ -137,6 +137,10 @@ void weld(Mesh &mesh, Task *task)
     const Vector<uint32_t> equal = equal_positions(mesh.positions, task);
     Vector<uint32_t> number(mesh.positions.size(), NO_EDGE);
     Vector<Vec3d> welded;
+    size_t most = 0;
+    for (size_t v = 0; v < equal.size(); ++v)
+        most += equal[v] == v;
+    welded.reserve(most);
     for (auto &triangle : mesh.triangles) {
         cancel_point();
         for (uint32_t &v : triangle) {

@@ -90,6 +90,7 @@ static DracoAttribute read_attribute(const draco::Mesh &mesh, const draco::Point
     to.full = full_value(from.data_type());
     int64_t item = int64_t(draco::DataTypeLength(from.data_type())) * to.components;
     bool sound = from.buffer() && item > 0 && from.byte_stride() >= item && from.byte_offset() >= 0;
+    to.values.reserve(size_t(to.components) * mesh.num_points());
     for (draco::PointIndex p(0); sound && p < mesh.num_points(); ++p) {
         if (!from.is_mapping_identity() && p.value() >= from.indices_map_size()) {
             sound = false;
@@ -208,6 +209,7 @@ Mesh import_draco(const ModelFile &file, Task &task)
 
     VertexMesh mesh;
     mesh.triangles = std::move(draco.triangles);
+    mesh.positions.reserve(draco.points);
     for (size_t i = 0; i < draco.points; ++i) {
         const double *p = &position->values[3 * i];
         mesh.positions.push_back({p[0], p[1], p[2]});
