@@ -195,8 +195,6 @@ bool Attachment::try_target(uint32_t candidate, uint32_t target, bool tiny)
     if (!look_at(looks + double(added.size())))
         return false;
     LayerGrid &grid = grids_[target];
-    if (grid.samples.empty())
-        grid = make_layer_grid(surface_, regions_[target], grid_of_[target], bounds_.pitch, task_);
     LayerGrid own = make_layer_grid(surface_, added, grid_of_[target], bounds_.pitch, task_);
     size_t doubled;
     if (fold_together(grid, own, layer_rule(surface_, bounds_.pitch), doubled) ||
@@ -252,6 +250,13 @@ void Attachment::run()
 {
     find_candidates();
     find_near();
+    Vector<uint8_t> is_near(regions_.size(), false);
+    for (const Near &near : near_)
+        is_near[near.region] = true;
+    task_.parallel(regions_.size(), [&](size_t i) {
+        if (is_near[i])
+            grids_[i] = make_layer_grid(surface_, regions_[i], grid_of_[i], bounds_.pitch, task_);
+    }, 0, 0);
     target_.resize(regions_.size());
     std::iota(target_.begin(), target_.end(), 0u);
     for (int pass = 1; pass <= PASSES; ++pass) {

@@ -91,15 +91,16 @@ Vec3d any_perpendicular(const Vec3d &z)
     return normalize(cross(z, least));
 }
 
-Vec3d median_axis(const Mesh &mesh, const Vector<uint32_t> &triangles)
+Vec3d median_axis(const Mesh &mesh, const Vector<uint32_t> &triangles,
+                  const Vector<Vec3f> *normals)
 {
     Vector<float> values[3];
     for (Vector<float> &of_axis : values)
         of_axis.reserve(triangles.size());
     for (uint32_t t : triangles) {
-        Vec3d normal = normalize(mesh.area_vector(t));
+        const Vec3f normal = normals ? (*normals)[t] : Vec3f(normalize(mesh.area_vector(t)));
         for (int i = 0; i < 3; ++i)
-            values[i].push_back(float(normal[i]));
+            values[i].push_back(normal[i]);
     }
     Vec3d median;
     for (int i = 0; i < 3; ++i) {

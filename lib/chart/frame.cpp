@@ -31,21 +31,24 @@ double turn(const Point &a, const Point &b, const Point &c)
 
 Vector<uint32_t> vertices_of(const Mesh &mesh, const Vector<uint32_t> &triangles)
 {
-    Vector<uint32_t> out;
-    out.reserve(triangles.size() * 3);
+    uint32_t low = UINT32_MAX, high = 0;
     for (uint32_t t : triangles)
-        out.insert(out.end(), mesh.triangles[t].begin(), mesh.triangles[t].end());
-    const auto [least, greatest] = std::minmax_element(out.begin(), out.end());
-    const uint32_t low = *least, high = *greatest;
-    if ((high - low) / 64 > out.size()) {
+        for (uint32_t vertex : mesh.triangles[t]) {
+            low = std::min(low, vertex);
+            high = std::max(high, vertex);
+        }
+    Vector<uint32_t> out;
+    if ((high - low) / 64 > 3 * triangles.size()) {
+        for (uint32_t t : triangles)
+            out.insert(out.end(), mesh.triangles[t].begin(), mesh.triangles[t].end());
         std::sort(out.begin(), out.end());
         out.erase(std::unique(out.begin(), out.end()), out.end());
         return out;
     }
     Vector<uint64_t> used((high - low) / 64 + 1);      /* a bit each: indices lie close together */
-    for (uint32_t vertex : out)
-        used[(vertex - low) / 64] |= uint64_t(1) << (vertex - low) % 64;
-    out.clear();
+    for (uint32_t t : triangles)
+        for (uint32_t vertex : mesh.triangles[t])
+            used[(vertex - low) / 64] |= uint64_t(1) << (vertex - low) % 64;
     for (uint32_t word = 0; word < used.size(); ++word)
         for (uint64_t bits = used[word]; bits; bits &= bits - 1)
             out.push_back(low + 64 * word + uint32_t(__builtin_ctzll(bits)));

@@ -9,8 +9,10 @@ namespace gtx {
 /* A unit vector across `z`. */
 Vec3d any_perpendicular(const Vec3d &z);
 
-/* The component-wise median of the triangles' normals, normalised (paper, section 5). */
-Vec3d median_axis(const Mesh &mesh, const Vector<uint32_t> &triangles);
+/* The component-wise median of the triangles' normals, normalised (paper, section 5). `normals`,
+ * where they are known, are the raw ones of all triangles of the mesh. */
+Vec3d median_axis(const Mesh &mesh, const Vector<uint32_t> &triangles,
+                  const Vector<Vec3f> *normals = nullptr);
 
 /* The axis of the smallest cone around the smoothed normals, but for the most deviant 0.5 % of
  * the area. */

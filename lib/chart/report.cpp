@@ -14,7 +14,7 @@ void report_initial(const Surface &surface, const Vector<Region> &regions, Task 
 {
     Vector<Vector<uint32_t>> inverted(regions.size());
     for_each_region(regions, task, [&](size_t i) {
-        Vec3d z = median_axis(surface.mesh, regions[i].triangles);
+        Vec3d z = median_axis(surface.mesh, regions[i].triangles, &surface.normal);
         for (uint32_t t : regions[i].triangles)
             if (dot(surface.mesh.area_vector(t), z) <= 0)
                 inverted[i].push_back(out.source_of(t));

@@ -41,7 +41,8 @@ double side_limit(const Surface &surface, const Vector<Region> &regions, Task &t
     Vector<std::pair<double, double>> sides(regions.size());      /* length, area */
     for_each_region(regions, task, [&](size_t i) {
         const Vector<uint32_t> &triangles = regions[i].triangles;
-        Frame frame = make_frame(surface.mesh, triangles, median_axis(surface.mesh, triangles));
+        const Vec3d z = median_axis(surface.mesh, triangles, &surface.normal);
+        Frame frame = make_frame(surface.mesh, triangles, z);
         sides[i].first = long_side(frame);
         for (uint32_t t : triangles)
             sides[i].second += surface.facets[t].size;

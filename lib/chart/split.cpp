@@ -291,7 +291,7 @@ Verdict judge(const Surface &surface, const Region &region, const Bounds &bounds
     };
     auto try_kind = [&](bool cone) {
         const Vec3d z = cone ? cone_axis(surface, region.triangles)
-                             : median_axis(surface.mesh, region.triangles);
+                             : median_axis(surface.mesh, region.triangles, &surface.normal);
         return try_axis(surface, region, z, bounds, task);
     };
     Verdict along;

@@ -236,7 +236,7 @@ Vector<Relief> turn_frames(const Surface &surface, const Vector<Region> &regions
     }, 0.2, 0.3);
     for_each_region(regions, task, [&](size_t n) {
         trees[n] = grow_cut_tree(turn_relief(reliefs[n / TURNS], radians(n % TURNS), COARSE),
-                                 plan, share);
+                                 plan, share, task);
     }, 0.3, 0.4, TURNS);
     Vector<size_t> best = choose_turns(trees, TURNS, plan.patches);
     for_each_region(regions, task, [&](size_t i) {
@@ -257,7 +257,7 @@ Vector<Chart> cut_charts(const Surface &surface, Vector<Region> regions,
     Vector<Relief> reliefs = turn_frames(surface, regions, plan, share, frames, task);
     Vector<CutTree> trees(regions.size());
     for_each_region(regions, task, [&](size_t i) {
-        trees[i] = grow_cut_tree(std::move(reliefs[i]), plan, share);
+        trees[i] = grow_cut_tree(std::move(reliefs[i]), plan, share, task);
         if (!plan.one_density)
             weigh_bends(trees[i]);
     }, 0.4, 0.8);

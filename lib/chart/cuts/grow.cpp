@@ -58,18 +58,14 @@ public:
     {
     }
 
-    Vector<CutNode> grow()
-    {
-        CutNode root;
-        root.region = root.tight = {{0, 0}, {relief_.size[0], relief_.size[1]}};
-        Vector<CutNode> nodes = {root};
-        for (size_t n = 0; n < nodes.size(); ++n)
-            grow_node(n, nodes);
-        return nodes;
-    }
+    Vector<CutNode> grow(Task &task);
 
 private:
-    void grow_node(size_t n, Vector<CutNode> &nodes);
+    struct Grown {
+        CutNode node, child[2];
+        bool has_children = false;
+    };
+    Grown grow_node(CutNode node);
     Vector<Lines> parts(const Rect &box, int axis, const Vector<int> &across) const;
     template <class Visit>
     void sweep(const Lines &lines, int axis, const Rect &region, const Cuts &cuts, Visit visit);
@@ -268,9 +264,9 @@ Cut Grower::look_ahead(const CutNode &node, const Rect &box, const Lines lines[2
     return best;
 }
 
-void Grower::grow_node(size_t n, Vector<CutNode> &nodes)
+Grower::Grown Grower::grow_node(CutNode node)
 {
-    CutNode node = nodes[n];
+    Grown out;
     Rect box;
     for (int k = 0; k < 2; ++k) {
         box.low[k] = std::max(node.region.low[k], node.tight.low[k]);
@@ -301,27 +297,53 @@ void Grower::grow_node(size_t n, Vector<CutNode> &nodes)
                                            : *std::min_element(cuts.begin(), cuts.end());
         for (int side = 0; side < 2; ++side) {
             Half half = half_of(node.region, node.cuts, cut.axis, cut.at, side);
-            CutNode child;
-            child.region = half.region;
-            child.tight = node.tight;
-            child.cuts = half.cuts;
-            node.child[side] = int(nodes.size());
-            nodes.push_back(child);
+            out.child[side].region = half.region;
+            out.child[side].tight = node.tight;
+            out.child[side].cuts = half.cuts;
         }
+        out.has_children = true;
         if (!fits)
             node.cost = INFINITY;
     }
-    nodes[n] = node;
+    out.node = node;
+    return out;
+}
+
+/* Level by level, the nodes of one at once where the relief is large. */
+Vector<CutNode> Grower::grow(Task &task)
+{
+    const bool at_once = task.parts(relief_.height.size(), 1 << 16) > 1; /* changes no byte */
+    CutNode root;
+    root.region = root.tight = {{0, 0}, {relief_.size[0], relief_.size[1]}};
+    Vector<CutNode> nodes = {root};
+    Vector<Grown> level;
+    for (size_t first = 0; first < nodes.size(); first += level.size()) {
+        level.resize(nodes.size() - first);
+        if (at_once)
+            task.parallel(level.size(), [&](size_t n) {
+                level[n] = Grower(*this).grow_node(nodes[first + n]);
+            }, 0, 0);
+        for (size_t n = 0; n < level.size(); ++n) {
+            if (!at_once)
+                level[n] = grow_node(nodes[first + n]);
+            nodes[first + n] = level[n].node;
+            for (int side = 0; side < 2 && level[n].has_children; ++side) {
+                nodes[first + n].child[side] = int(nodes.size());
+                nodes.push_back(level[n].child[side]);
+            }
+        }
+    }
+    return nodes;
 }
 
 } // namespace
 
-CutTree grow_cut_tree(Relief relief, const CutPlan &plan, double share)
+CutTree grow_cut_tree(Relief relief, const CutPlan &plan, double share, Task &task)
 {
     CutTree tree;
     tree.relief = std::move(relief);
     if (!tree.relief.touched.empty())
-        tree.nodes = Grower(tree.relief, plan, share).grow();
+        tree.nodes = Grower(tree.relief, plan, share).grow(task);
     return tree;
 }
 

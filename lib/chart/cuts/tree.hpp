@@ -70,7 +70,7 @@ struct CutTree {
 
 /* Grows the tree of a chart down to where its patches would be far smaller than wanted; `share` is
  * how many texels of surface a wanted patch has. */
-CutTree grow_cut_tree(Relief relief, const CutPlan &plan, double share);
+CutTree grow_cut_tree(Relief relief, const CutPlan &plan, double share, Task &task);
 
 /* Measures the bends of all nodes, and weighs their costs by them: as texels will be spread. */
 void weigh_bends(CutTree &tree);
