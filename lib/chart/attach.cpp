@@ -106,19 +106,25 @@ void Attachment::find_near()
                 grid.add(mesh.positions[v], candidate);
     grid.dilate();
 
-    Vector<uint32_t> last_seen(mesh.positions.size(), NO_TRIANGLE);      /* a vertex: by a region */
-    Vector<uint32_t> last_region(regions_.size(), NO_TRIANGLE);          /* of a candidate */
-    for (uint32_t region = 0; region < regions_.size(); ++region)
-        for (uint32_t t : regions_[region].triangles)
-            for (uint32_t v : mesh.triangles[t])
-                if (std::exchange(last_seen[v], region) != region) {
-                    cancel_point();
-                    grid.each_near(mesh.positions[v], [&](uint32_t candidate) {
-                        if (candidate != region &&
-                            std::exchange(last_region[candidate], region) != region)
-                            near_.push_back({candidate, region});
-                    });
-                }
+    constexpr size_t LEAST = 16; /* regions; changes no byte */
+    Vector<Vector<Near>> found(candidates_.empty() ? 0 : task_.parts(regions_.size(), LEAST));
+    task_.in_parts(regions_.size(), found.size(), [&](size_t part, size_t from, size_t to) {
+        Vector<uint32_t> last_seen(mesh.positions.size(), NO_TRIANGLE); /* a vertex: by a region */
+        Vector<uint32_t> last_region(regions_.size(), NO_TRIANGLE);     /* of a candidate */
+        for (auto region = uint32_t(from); region < to; ++region)
+            for (uint32_t t : regions_[region].triangles)
+                for (uint32_t v : mesh.triangles[t])
+                    if (std::exchange(last_seen[v], region) != region) {
+                        cancel_point();
+                        grid.each_near(mesh.positions[v], [&](uint32_t candidate) {
+                            if (candidate != region &&
+                                std::exchange(last_region[candidate], region) != region)
+                                found[part].push_back({candidate, region});
+                        });
+                    }
+    });
+    for (const Vector<Near> &some : found)
+        near_.insert(near_.end(), some.begin(), some.end());
     /* Regions ascend already. */
     std::stable_sort(near_.begin(), near_.end(), [](const Near &a, const Near &b) {
         return a.candidate < b.candidate;

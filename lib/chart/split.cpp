@@ -77,6 +77,8 @@ Vector<uint32_t> find_walls(const Surface &surface, const Region &region, const 
         uint32_t t = region.triangles[i];
         wall[i] = !surface.junk[t] && dot(Vec3d(surface.normal[t]), z) < least;
     }
+    if (std::find(wall.begin(), wall.end(), 1u) == wall.end())
+        return {};
     Vector<uint32_t> group = wall;
     Vector<double> area(connected_pieces(region, group));
     for (size_t i = 0; i < region.size(); ++i)

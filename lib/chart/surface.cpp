@@ -148,7 +148,8 @@ void connect_whole(Surface &surface)
     surface.whole.neighbours = neighbours_of(surface.mesh, surface.manifold);
 }
 
-void measure_facets(Surface &surface, double pitch)
+/* Raw normals, and facets that have these. */
+void measure_facets(Surface &surface, Task &task)
 {
     const Mesh &mesh = surface.mesh;
     const size_t count = mesh.triangle_count();
@@ -161,22 +162,30 @@ void measure_facets(Surface &surface, double pitch)
     surface.diagonal = length(high - low);
     Vec3d middle = low + (high - low) * 0.5;
 
+    constexpr size_t LEAST = 1 << 12;
     double mean = surface.area / double(count);
-    for (size_t t = 0; t < count; ++t) {
-        Vec3d vector = mesh.area_vector(t);
-        Vec3d sum;
-        for (int k = 0; k < 3; ++k)
-            sum += mesh.position(t, k) - middle;
-        Vec3f normal = Vec3f(normalize(vector)), centre = Vec3f(sum / (3 * std::sqrt(mean)));
-        float size = std::max(float(length(vector) / 2 / mean), SMALLEST_SIZE);
-        surface.normal.push_back(normal);
-        surface.facets.push_back({normal, centre, size});
-    }
-    double texel = pitch * pitch / mean;
-    smooth_normals(surface, float(LARGE_TRIANGLE * texel));
-    for (size_t t = 0; t < count; ++t)
-        surface.junk.push_back(surface.facets[t].size < JUNK_TEXELS * texel &&
-                               dot(surface.normal[t], surface.facets[t].normal) < JUNK_COSINE);
+    surface.normal.resize(count);
+    surface.facets.resize(count);
+    task.in_parts(count, task.parts(count, LEAST), [&](size_t, size_t from, size_t to) {
+        for (size_t t = from; t < to; ++t) {
+            Vec3d vector = mesh.area_vector(t);
+            Vec3d sum;
+            for (int k = 0; k < 3; ++k)
+                sum += mesh.position(t, k) - middle;
+            Vec3f normal = Vec3f(normalize(vector)), centre = Vec3f(sum / (3 * std::sqrt(mean)));
+            float size = std::max(float(length(vector) / 2 / mean), SMALLEST_SIZE);
+            surface.normal[t] = normal;
+            surface.facets[t] = {normal, centre, size};
+        }
+    });
+}
+
+void find_junk(Surface &surface, double texel)
+{
+    surface.junk.resize(surface.facets.size());
+    for (size_t t = 0; t < surface.junk.size(); ++t)
+        surface.junk[t] = surface.facets[t].size < JUNK_TEXELS * texel &&
+                          dot(surface.normal[t], surface.facets[t].normal) < JUNK_COSINE;
 }
 
 } // namespace
@@ -199,11 +208,15 @@ double texels_of(const Surface &surface, const Region &region, double pitch)
 Surface make_surface(const Mesh &mesh, double pitch, Task &task)
 {
     Surface surface = {mesh, {}, area_of(mesh), 0, {}, {}, {}, false};
+    measure_facets(surface, task);
+    const double texel = pitch * pitch / (surface.area / double(surface.facets.size()));
     task.parallel(2, [&](size_t half) {
-        if (half == 0)
+        if (half == 0) {
             connect_whole(surface);
-        else
-            measure_facets(surface, pitch);
+        } else {
+            smooth_normals(surface, float(LARGE_TRIANGLE * texel));
+            find_junk(surface, texel);
+        }
     }, 0, 0);
     return surface;
 }

@@ -66,15 +66,17 @@ static void add_triangle(const Vec3d corner[3], Relief &out)
             height = float(depth);
         out.touched[out.at(i, j)] = 1;
     });
+    auto touch = [&out](const Vec3d &p) {
+        int i = std::clamp(int(p.x), 0, out.size[0] - 1);
+        int j = std::clamp(int(p.y), 0, out.size[1] - 1);
+        out.touched[out.at(i, j)] = 1;
+    };
     for (int k = 0; k < 3; ++k) { /* a sliver passes between centres */
         Vec3d from = corner[k], along = corner[(k + 1) % 3] - from;
         int steps = 1 + whole_length(2, along.x, along.y);
-        for (int s = 0; s < steps; ++s) {
-            Vec3d p = from + along * (double(s) / steps);
-            int i = std::clamp(int(p.x), 0, out.size[0] - 1);
-            int j = std::clamp(int(p.y), 0, out.size[1] - 1);
-            out.touched[out.at(i, j)] = 1;
-        }
+        touch(from);
+        for (int s = 1; s < steps; ++s)
+            touch(from + along * (double(s) / steps));
     }
 }
 

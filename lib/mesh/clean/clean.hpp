@@ -60,9 +60,10 @@ void choose_sides(Draft &surface, bool cut, Task &task, CleanReport &report);
 void make_normals(Draft &surface, Task &task);
 
 /* Triangles grouped by component: those of component c are order[first[c]] to
- * order[first[c + 1] - 1], in breadth-first order from the lowest. */
+ * order[first[c + 1] - 1], in breadth-first order from the lowest; its half-edges without a twin
+ * likewise, in the order of their triangles. */
 struct Components {
-    Vector<uint32_t> order, first;
+    Vector<uint32_t> order, first, borders, first_border;
     size_t count() const { return first.size() - 1; }
 };
 
@@ -79,13 +80,16 @@ template <class Meet> Components flood(const Vector<uint32_t> &twin, Meet meet)
             continue;
         size_t head = result.order.size();
         result.first.push_back(uint32_t(head));
+        result.first_border.push_back(uint32_t(result.borders.size()));
         reached[seed] = true;
         result.order.push_back(uint32_t(seed));
         for (; head < result.order.size(); ++head)
             for (uint32_t h = 3 * result.order[head], end = h + 3; h < end; ++h) {
                 uint32_t o = twin[h];
-                if (o == NO_EDGE)
+                if (o == NO_EDGE) {
+                    result.borders.push_back(h);
                     continue;
+                }
                 bool fresh = !reached[o / 3];
                 if (fresh) {
                     reached[o / 3] = true;
@@ -95,6 +99,7 @@ template <class Meet> Components flood(const Vector<uint32_t> &twin, Meet meet)
             }
     }
     result.first.push_back(uint32_t(result.order.size()));
+    result.first_border.push_back(uint32_t(result.borders.size()));
     return result;
 }
 

@@ -141,25 +141,21 @@ void choose_sides(Draft &surface, bool cut, Task &task, CleanReport &report)
     Components components = flood(surface.twin, [](uint32_t, uint32_t, bool) {});
     Vector<bool> closed(components.count()), seen(surface.twin.size());
     for (size_t c = 0; c < components.count(); ++c) {
-        size_t from = components.first[c], to = components.first[c + 1], borders = 0;
+        size_t from = components.first[c], to = components.first[c + 1];
         double area = 0, gaps = 0;
-        for (size_t i = from; i < to; ++i) {
-            uint32_t t = components.order[i];
-            for (uint32_t h = 3 * t; h < 3 * t + 3; ++h)
-                if (surface.twin[h] == NO_EDGE) {
-                    ++borders;
-                    gaps += seen[h] ? 0 : gap_at(surface, h, seen);
-                }
+        for (size_t i = components.first_border[c]; i < components.first_border[c + 1]; ++i) {
+            const uint32_t h = components.borders[i];
+            gaps += seen[h] ? 0 : gap_at(surface, h, seen);
         }
         for (size_t i = from; i < to && gaps > SMALL_GAPS * area; ++i)
             area += length(surface.mesh.area_vector(components.order[i])) / 2;
         closed[c] = gaps <= SMALL_GAPS * area;
-        report.boundary_edges += borders;
         surface.open_components += !closed[c] && !cut;
         for (size_t i = from; i < to && !closed[c] && !cut; ++i)
             surface.mesh.flags[components.order[i]] |= TRIANGLE_TWO_SIDED;
     }
     report.components = components.count();
+    report.boundary_edges = components.borders.size();
     report.closed = report.boundary_edges == 0;
     turn_inside_out(surface, components, closed, task);
 }
