@@ -46,13 +46,14 @@ inline size_t vertex_parts(const Mesh &mesh, const Task &task)
  * after), by that vertex, its half-edges in rising order. A counting sort by the lower vertex
  * leaves lists of about three entries. */
 template <class Visit>
-void for_each_edge(const Mesh &mesh, size_t begin, size_t after, Visit visit)
+void for_each_edge(const Vector<std::array<uint32_t, 3>> &triangles, size_t begin, size_t after,
+                   Visit visit)
 {
     Vector<uint32_t> end(after - begin + 1, 0);
     auto each_half_edge = [&](auto body) {
-        for (size_t t = 0; t < mesh.triangles.size(); ++t)
+        for (size_t t = 0; t < triangles.size(); ++t)
             for (int k = 0; k < 3; ++k) {
-                uint32_t a = mesh.triangles[t][k], b = mesh.triangles[t][(k + 1) % 3];
+                uint32_t a = triangles[t][k], b = triangles[t][(k + 1) % 3];
                 if (const size_t low = std::min(a, b) - begin; low < after - begin)
                     body(low, EdgeEntry{std::max(a, b), uint32_t(3 * t + k)});
             }
@@ -79,7 +80,7 @@ void for_each_edge(const Mesh &mesh, size_t begin, size_t after, Visit visit)
 /* For every edge of the mesh. */
 template <class Visit> void for_each_edge(const Mesh &mesh, Visit visit)
 {
-    for_each_edge(mesh, 0, mesh.positions.size(), visit);
+    for_each_edge(mesh.triangles, 0, mesh.positions.size(), visit);
 }
 
 } // namespace gtx

@@ -91,9 +91,14 @@ Mesh import_mesh(const std::string &path, Task &task, Vector<std::string> *sourc
  * no border. Throws Error: EMPTY, CANCELLED. */
 Mesh clean_mesh(Mesh mesh, Task &task, CleanReport &report, bool closed = false);
 
-/* Three neighbours a triangle: neighbour[t][k] shares the edge from corner k to corner k + 1, or is
- * NO_TRIANGLE at a border. For cleaned meshes. */
+/* Three neighbours a triangle: neighbour[t][k] shares the edge from corner k to corner k + 1 the
+ * other way round, or is NO_TRIANGLE: at a border, and where several triangles do. */
 constexpr uint32_t NO_TRIANGLE = 0xffffffffu;
-Vector<std::array<uint32_t, 3>> triangle_neighbours(const Mesh &mesh);
+Vector<std::array<uint32_t, 3>> triangle_neighbours(
+    size_t vertices, const Vector<std::array<uint32_t, 3>> &triangles);
+inline Vector<std::array<uint32_t, 3>> triangle_neighbours(const Mesh &mesh)
+{
+    return triangle_neighbours(mesh.positions.size(), mesh.triangles);
+}
 
 } // namespace gtx

@@ -36,10 +36,7 @@ struct Ground {
     {
         Task task(1, nullptr, nullptr);
         const SortedSurface surface(positions, triangles, task, 0);
-        const uint32_t from_root = covering(t, surface, most, NO_PATCH);
-        for (uint32_t near = 0; near < surface.size(); near += 17)
-            assert_int_equal(covering(t, surface, most, near) == NO_PATCH, from_root == NO_PATCH);
-        return from_root != NO_PATCH;
+        return covering(t, surface, most, NO_PATCH) != NO_PATCH;
     }
 };
 
@@ -80,7 +77,7 @@ static void holes_and_borders_are_seen(void **)
     assert_false(empty.covers(low, 10));
 }
 
-/* What is turned over, and what comes to an end under what lies above it. */
+/* What is turned over, or there twice. */
 static void folds_cover_nothing(void **)
 {
     Ground over;
@@ -89,12 +86,30 @@ static void folds_cover_nothing(void **)
     Ground doubled;
     doubled.triangles.push_back(doubled.triangles[54]);
     assert_false(doubled.covers(low, 0.11));
-    Ground two; /* whole below, and a part of it again above */
-    const uint32_t above = uint32_t(two.positions.size());
+}
+
+/* From all that is a few steps away, or else from what is nearest to the middle. Another sheet
+ * above is no matter to who begins below it, and covers by itself if it is whole. */
+static void what_is_close_by_begins(void **)
+{
+    Task task(1, nullptr, nullptr);
+    Ground ground;
+    const uint32_t above = uint32_t(ground.positions.size());
     for (const Vec3d &p : {Vec3d(0, 0, 0.12), Vec3d(3, 0, 0.12), Vec3d(0, 3, 0.12)})
-        two.positions.push_back(p);
-    two.triangles.push_back({above, above + 1, above + 2});
-    assert_false(two.covers(low, 0.11));
+        ground.positions.push_back(p);
+    for (bool both : {false, true}) {
+        if (both)
+            ground.triangles.push_back({above, above + 1, above + 2});
+        const SortedSurface surface(ground.positions, ground.triangles, task, 0);
+        for (uint32_t near = 0; near < surface.size(); ++near) {
+            const bool higher = surface.given(near) == 128;
+            const uint32_t over = covering(low, surface, 0.11, near);
+            assert_int_equal(over == NO_PATCH, higher);
+            if (!higher)
+                assert_in_range(surface.given(over), 54, 55); /* its square has the middle */
+        }
+        assert_int_equal(covering(low, surface, 0.11, NO_PATCH) == NO_PATCH, both);
+    }
 }
 
 static void what_has_no_area_is_not_sure(void **)
@@ -173,6 +188,7 @@ int main()
         cmocka_unit_test(all_of_it_or_nothing),
         cmocka_unit_test(holes_and_borders_are_seen),
         cmocka_unit_test(folds_cover_nothing),
+        cmocka_unit_test(what_is_close_by_begins),
         cmocka_unit_test(what_has_no_area_is_not_sure),
         cmocka_unit_test(a_corner_in_common),
         cmocka_unit_test(needles_are_not_sure),

@@ -1,5 +1,5 @@
-/* Adds up the edges over a triangle: where a surface goes on beyond each of them, it lies over all
- * of the triangle if it does over the middle. */
+/* Spreads over a triangle from what lies over its middle: a surface that goes on beyond each of its
+ * edges that cross the triangle lies over all of it. */
 #include "bake/lod/cover.hpp"
 
 #include <algorithm>
@@ -11,6 +11,11 @@ namespace {
 
 /* Of an angle of a triangle: what thinner ones say of places over them is lost in rounding. */
 constexpr double MIN_SINE = 1e-6;
+/* Triangles that lie over another; at half the dragon's cook takes 3 % more instructions, at double
+ * 0.7 % fewer. */
+constexpr size_t MAX_OVER = 64;
+/* From a triangle close by to the one over the middle: a limit. */
+constexpr int MAX_STEPS = 16;
 
 /* A place over a triangle: the shares of its corners, of which none is below 0 inside, and the
  * height over its plane. */
@@ -32,30 +37,14 @@ public:
     }
     bool is_flat() const { return is_flat_; }
     const Vec3d &up() const { return up_; }
-    /* Whether corners are not all beside it, and where they are then. */
-    bool place(const Corners &corners, Over (&at)[3]) const
+    Over place(const Vec3d &point) const
     {
-        Vec3d from[3];
-        for (int k = 0; k < 3; ++k) {
-            from[k] = corners[k] - origin_;
-            at[k].share[1] = dot(b_, from[k]);
-        }
-        if (are_beside(at, 1))
-            return false;
-        for (int k = 0; k < 3; ++k) {
-            at[k].share[2] = dot(c_, from[k]);
-            at[k].share[0] = 1 - at[k].share[1] - at[k].share[2];
-            at[k].height = dot(up_, from[k]);
-        }
-        return !are_beside(at, 2) && !are_beside(at, 0);
+        const Vec3d from = point - origin_;
+        const double x = dot(b_, from), y = dot(c_, from);
+        return {{1 - x - y, x, y}, dot(up_, from)};
     }
 
 private:
-    static bool are_beside(const Over (&at)[3], int k)
-    {
-        return (at[0].share[k] <= 0) & (at[1].share[k] <= 0) & (at[2].share[k] <= 0);
-    }
-
     Vec3d origin_, b_, c_, up_;
     bool is_flat_;
 };
@@ -109,68 +98,141 @@ bool is_within(const Over (&at)[3], double most)
  * what is said of it: both its triangles say the same. */
 class Edge {
 public:
-    Edge(uint32_t from, uint32_t to, const Over &at_from, const Over &at_to)
-        : up_(from < to), low_(up_ ? from : to), high_(up_ ? to : from)
+    Edge(bool up, const Over &from, const Over &to)
+        : up_(up), a_(up ? from.share : to.share), b_(up ? to.share : from.share),
+          x_(b_[1] - a_[1]), y_(b_[2] - a_[2]), first_(y_ * a_[1] - x_ * a_[2])
     {
-        const double *a = up_ ? at_from.share : at_to.share;
-        const double *b = up_ ? at_to.share : at_from.share;
-        const double x = b[1] - a[1], y = b[2] - a[2];
-        const double first = y * a[1] - x * a[2], second = first - y, third = first + x;
-        centre_ = first + (x - y) / 3;
-        crosses_ = !((std::min({first, second, third}) >= 0) |
-                     (std::max({first, second, third}) <= 0) |
-                     (std::max(a[0], b[0]) <= 0) | (std::max(a[1], b[1]) <= 0) |
-                     (std::max(a[2], b[2]) <= 0));
     }
     /* Whether a part of it is over the inside. */
-    bool crosses() const { return crosses_; }
-    /* Whether the middle is to its left, or on it, of one of the ways. */
-    bool has_middle() const { return up_ ? centre_ >= 0 : centre_ < 0; }
-    /* The negative number the other way. */
-    uint64_t number() const
+    bool crosses() const
     {
-        uint64_t n = (uint64_t(low_) << 32 | high_) * 0x9e3779b97f4a7c15u;
-        n = (n ^ n >> 29) * 0xbf58476d1ce4e5b9u;
-        n ^= n >> 32;
-        return up_ ? n : 0 - n;
+        const double second = first_ - y_, third = first_ + x_;
+        return !(((first_ >= 0) & (second >= 0) & (third >= 0)) |
+                 ((first_ <= 0) & (second <= 0) & (third <= 0)) |
+                 ((a_[0] <= 0) & (b_[0] <= 0)) | ((a_[1] <= 0) & (b_[1] <= 0)) |
+                 ((a_[2] <= 0) & (b_[2] <= 0)));
+    }
+    /* Whether the middle is to its left, or on it, of one of the ways. */
+    bool has_middle() const
+    {
+        const double middle = first_ + (x_ - y_) / 3;
+        return up_ ? middle >= 0 : middle < 0;
     }
 
 private:
-    bool up_, crosses_;
-    uint32_t low_, high_;
-    double centre_;              /* > 0: the middle is to the left of the way up */
+    bool up_;
+    const double *a_, *b_;       /* shares at the lower vertex and the higher */
+    double x_, y_, first_;       /* > 0: the first corner is to the left of the way up */
 };
 
-/* What lies over a triangle. */
-struct Sum {
-    double most;
-    uint32_t middle = NO_PATCH;  /* a triangle over the middle */
-    /* Numbers of the edges, 0 where all have both their triangles: other sums of 64 bits are that
-     * as seldom as any number. */
-    uint64_t edges = 0;
+/* A triangle of the surface; NO_TRIANGLE beyond its border. */
+struct Placed {
+    uint32_t triangle = NO_TRIANGLE;
+    int known = -1;              /* the side that the surface came over */
+    Over at[3];
 
-    void add(uint32_t triangle, const std::array<uint32_t, 3> &vertices, const Over (&at)[3])
+    bool faces() const
     {
         const double *a = at[0].share, *b = at[1].share, *c = at[2].share;
-        if (!((b[1] - a[1]) * (c[2] - a[2]) > (b[2] - a[2]) * (c[1] - a[1])))
-            return; /* turned away */
-        bool has_middle = true, crosses = false;
-        uint64_t sum = 0;
-        for (int k = 0; k < 3; ++k) {
-            const int next = k == 2 ? 0 : k + 1;
-            const Edge edge(vertices[k], vertices[next], at[k], at[next]);
-            has_middle = has_middle && edge.has_middle();
-            if (edge.crosses()) {
-                crosses = true;
-                sum += edge.number();
-            }
-        }
-        if ((!crosses && !has_middle) || !is_within(at, most))
-            return;
-        edges += sum;
-        middle = has_middle ? triangle : middle;
+        return (b[1] - a[1]) * (c[2] - a[2]) > (b[2] - a[2]) * (c[1] - a[1]);
     }
 };
+
+/* The part of a surface that lies over a triangle. */
+class Cover {
+public:
+    Cover(const Prism &prism, const SortedSurface &surface, double most)
+        : prism_(prism), surface_(surface), most_(most)
+    {
+    }
+    /* That over the middle, in a few steps from one close by; else none. */
+    Placed over_middle(uint32_t near) const;
+    /* Whether it goes on from one over the middle to all of the triangle. */
+    bool spreads(const Placed &middle);
+
+private:
+    Placed whole(uint32_t triangle) const;
+    Placed beyond(const Placed &from, int side) const;
+    Edge edge(const Placed &of, int side) const;
+    bool is_new(uint32_t triangle) const
+    {
+        return std::find(seen_, seen_ + count_, triangle) == seen_ + count_;
+    }
+
+    const Prism &prism_;
+    const SortedSurface &surface_;
+    const double most_;
+    uint32_t seen_[MAX_OVER];
+    size_t count_ = 0;
+};
+
+Placed Cover::whole(uint32_t triangle) const
+{
+    const Corners c = surface_.corners(triangle);
+    return {triangle, -1, {prism_.place(c[0]), prism_.place(c[1]), prism_.place(c[2])}};
+}
+
+/* Its own corner is the only one whose place is not known. */
+Placed Cover::beyond(const Placed &from, int side) const
+{
+    Placed to;
+    to.triangle = surface_.beside(from.triangle)[side];
+    if (to.triangle == NO_TRIANGLE)
+        return to;
+    const int next = side == 2 ? 0 : side + 1;
+    const uint32_t last = surface_.vertices(from.triangle)[next];
+    const std::array<uint32_t, 3> &v = surface_.vertices(to.triangle);
+    const int first = v[0] == last ? 0 : v[1] == last ? 1 : 2, own = (first + 2) % 3;
+    to.at[first] = from.at[next];
+    to.at[(first + 1) % 3] = from.at[side];
+    to.known = first;
+    to.at[own] = prism_.place(surface_.corners(to.triangle)[own]);
+    return to;
+}
+
+Edge Cover::edge(const Placed &of, int side) const
+{
+    const std::array<uint32_t, 3> &v = surface_.vertices(of.triangle);
+    const int next = side == 2 ? 0 : side + 1;
+    return Edge(v[side] < v[next], of.at[side], of.at[next]);
+}
+
+Placed Cover::over_middle(uint32_t near) const
+{
+    Placed at = whole(near);
+    for (int n = 0; n < MAX_STEPS && at.triangle != NO_TRIANGLE && at.faces(); ++n) {
+        int side = 0;
+        while (side < 3 && (side == at.known || edge(at, side).has_middle()))
+            ++side;
+        if (side == 3)
+            return at;
+        at = beyond(at, side);
+    }
+    return {};
+}
+
+bool Cover::spreads(const Placed &middle)
+{
+    Placed left[MAX_OVER + 2];
+    size_t size = 0;
+    left[0] = middle;
+    left[size++].known = -1;     /* nothing is said yet of what came there */
+    while (size) {
+        const Placed at = left[--size];
+        if (at.triangle == NO_TRIANGLE)
+            return false;
+        if (!is_new(at.triangle))
+            continue;
+        if (count_ == MAX_OVER || !at.faces() || !is_within(at.at, most_))
+            return false;
+        seen_[count_++] = at.triangle;
+        for (int side = 0; side < 3; ++side)
+            if (side != at.known && edge(at, side).crosses() &&
+                is_new(surface_.beside(at.triangle)[side]))
+                left[size++] = beyond(at, side);
+    }
+    return true;
+}
 
 } // namespace
 
@@ -180,19 +242,18 @@ uint32_t covering(const Corners &triangle, const SortedSurface &surface, double 
     const Prism prism(triangle);
     if (prism.is_flat())
         return NO_PATCH;
-    gtx::Box around;
-    for (const Vec3d &p : triangle) {
-        around.add(p + prism.up() * most);
-        around.add(p - prism.up() * most);
+    Cover cover(prism, surface, most);
+    Placed middle;
+    if (near < surface.size())
+        middle = cover.over_middle(near);
+    if (middle.triangle == NO_TRIANGLE) {
+        near = NO_PATCH;
+        surface.tree().nearer(most * most, (triangle[0] + triangle[1] + triangle[2]) / 3, &near,
+                              [](uint32_t) { return true; });
+        if (near != NO_PATCH)
+            middle = cover.over_middle(near);
     }
-    Sum sum = {most};
-    surface.tree().visit_around(near, [&](const gtx::Box &box) { return !around.touches(box); },
-                                [&](uint32_t t) {
-        Over at[3];
-        if (prism.place(surface.corners(t), at))
-            sum.add(t, surface.vertices(t), at);
-    });
-    return sum.edges == 0 ? sum.middle : NO_PATCH;
+    return middle.triangle != NO_TRIANGLE && cover.spreads(middle) ? middle.triangle : NO_PATCH;
 }
 
 } // namespace gtx::baking

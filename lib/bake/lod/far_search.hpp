@@ -3,6 +3,7 @@
 #pragma once
 
 #include "bake/lod/parts.hpp"
+#include "mesh/mesh.hpp"
 #include "mesh/nearest.hpp"
 
 namespace gtx::baking {
@@ -51,6 +52,9 @@ public:
     size_t size() const { return triangles_.size(); }
     std::array<Vec3d, 3> corners(size_t t) const { return shapes_.corners(t); }
     const std::array<uint32_t, 3> &vertices(size_t t) const { return triangles_[t]; }
+    /* The triangles that go on beyond its edges, the first from corner 0 to corner 1, the same way
+     * round; NO_TRIANGLE where none or several do. */
+    const std::array<uint32_t, 3> &beside(size_t t) const { return beside_[t]; }
     double mean_area() const { return mean_area_; }
     const NearestTree<Surface> &tree() const { return tree_; }
     /* Which of those that were given triangle t is. */
@@ -62,6 +66,7 @@ private:
     Surface shapes_;
     NearestTree<Surface> tree_;
     Vector<uint32_t> given_;
+    Vector<std::array<uint32_t, 3>> beside_;
     double mean_area_ = 0;
 };
 

@@ -61,7 +61,7 @@ void pair_edges(Draft &surface, Task &task, CleanReport &report)
     Vector<Found> found(vertex_parts(mesh, task));
     task.in_parts(mesh.positions.size(), found.size(), [&](size_t part, size_t from, size_t to) {
         Found own;
-        for_each_edge(mesh, from, to, [&](const EdgeEntry *edge, size_t count) {
+        for_each_edge(mesh.triangles, from, to, [&](const EdgeEntry *edge, size_t count) {
             if (count == 2) {
                 const uint32_t a = edge[0].half_edge, b = edge[1].half_edge;
                 join(surface.twin, a, b);
