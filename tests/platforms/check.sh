@@ -26,8 +26,12 @@ unpack()
 {
     root=$folder/$1/root
     mkdir -p "$folder/$1"
-    [ -d "$root/usr" ] || mmdebstrap --quiet --architectures="$1" --variant=extract \
-        --include="$packages" bookworm "$root" "$mirror"
+    [ "$(cat "$folder/$1/packages" 2>/dev/null)" = "$packages" ] || {
+        rm -rf "$root"
+        mmdebstrap --quiet --architectures="$1" --variant=extract --include="$packages" \
+            bookworm "$root" "$mirror"
+        echo "$packages" >"$folder/$1/packages"
+    }
     # Linkers follow links such as libm.so, and would leave the folder by those that begin with /.
     find "$root" -type l -lname '/*' | while read -r link; do
         target=$(readlink "$link")
