@@ -36,7 +36,8 @@ public:
     void work(uint64_t steps);
     /* What follows in it may do as much once more. */
     void work_again() noexcept { worked_[lane] = 0; }
-    /* Of two things done at once, for each to count its own work alone. */
+    /* Of things done at once, for each to count its own work alone. */
+    static constexpr unsigned LANES = 3;
     static thread_local unsigned lane;
     /* Options that ask for more may do so many times as much as the default. */
     void allow_work(double times) noexcept { more_work_ = times; }
@@ -54,7 +55,7 @@ private:
     std::set<std::string> files_;
     std::atomic<uint64_t> read_{0}, most_{0};
     std::atomic<int64_t> taken_{0};
-    std::atomic<uint64_t> worked_[2] = {};
+    std::atomic<uint64_t> worked_[LANES] = {};
     double more_work_ = 1;
 };
 

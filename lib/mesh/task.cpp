@@ -292,17 +292,21 @@ void Task::in_parts(size_t count, size_t parts,
     }, 0, 0);
 }
 
-void Task::both(const std::function<void()> &first, const std::function<void()> &second)
+void Task::at_once(std::initializer_list<std::function<void()>> steps)
 {
-    parallel(2, [&](size_t which) {
-        const unsigned outer = Limits::lane;
+    const unsigned outer = Limits::lane;
+    const auto body = [&](size_t which) {
         struct Lane {
-            unsigned outer;
-            ~Lane() { Limits::lane = outer; }
-        } lane = {outer};
-        Limits::lane = which ? 1 - outer : outer;
-        which ? second() : first();
-    }, 0, 0);
+            unsigned before = Limits::lane;
+            ~Lane() { Limits::lane = before; }
+        } lane;
+        Limits::lane = unsigned(outer + which) % Limits::LANES;
+        steps.begin()[which]();
+    };
+    Crew crew(*this, steps.size(), body);
+    crew.hire(threads_ > 1 ? steps.size() - 1 : 0);
+    crew.work([this](size_t) { advance(0); });
+    crew.rethrow();
 }
 
 } // namespace gtx

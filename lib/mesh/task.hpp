@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <exception>
 #include <functional>
+#include <initializer_list>
 #include <string>
 #include <thread>
 #include <vector>
@@ -97,9 +98,9 @@ public:
     void in_parts(size_t count, size_t parts,
                   const std::function<void(size_t, size_t, size_t)> &body);
 
-    /* Both at once where there are threads for it, or one after the other; each may use parallel(),
-     * and counts its own work. Not for use inside of either. */
-    void both(const std::function<void()> &first, const std::function<void()> &second);
+    /* All at once where there are threads for it, or one after the other; each may use parallel(),
+     * and counts its own work. At most Limits::LANES, and not for use inside of any. */
+    void at_once(std::initializer_list<std::function<void()>> steps);
 
     unsigned threads() const { return threads_; }
     /* Seconds spent in each stage so far, in the order of the constructor. */

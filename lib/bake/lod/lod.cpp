@@ -249,6 +249,7 @@ static void store_levels(const LodJob &job, Line &line, Vector<LodLevel> &lod)
                               maps.normal[0].data()};
     bool lit = true;
     for (size_t k = 0; const MadeLevel *made = line.at(k, Line::BOUNDED, job.task); ++k) {
+        job.task.limits.work_again();
         lod.push_back(stored(made->mesh, job.regions.size(), job.lattice));
         LodLevel &level = lod.back();
         level.error = made->error;
@@ -281,12 +282,8 @@ Vector<LodLevel> make_lod(const LodSource &source, const Maps &maps, unsigned le
     const LodJob job = {source, maps, regions, lattice, pitch, length(size), task};
     Line line;
     Vector<LodLevel> lod;
-    task.both([&] { make_levels(job, levels, line); },
-              [&] {
-                  task.parallel(2, [&](size_t which) {
-                      which ? store_levels(job, line, lod) : find_errors(job, line);
-                  }, 0, 0);
-              });
+    task.at_once({[&] { make_levels(job, levels, line); }, [&] { find_errors(job, line); },
+                  [&] { store_levels(job, line, lod); }});
     return lod;
 }
 
