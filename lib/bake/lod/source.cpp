@@ -68,12 +68,12 @@ static void drop_hidden(const Vector<PatchRegion> &regions, LodSource &source, T
 
 /* Height fields that meet have vertices of their own in a mesh. Here they have the same: they must
  * not part when they get fewer triangles. */
-static LodSource joined(const Mesh &mesh, const Vec3d &anchor)
+static LodSource joined(const Mesh &mesh, const Vec3d &anchor, Task &task)
 {
     Mesh places;
     places.positions = mesh.positions;
     places.triangles = mesh.triangles;
-    weld(places);
+    weld(places, &task);
     for (Vec3d &p : places.positions)
         p = p - anchor;
     LodSource source;
@@ -87,7 +87,7 @@ LodSource lod_source(const Mesh &mesh, const Partition &partition, const Maps &m
 {
     task.begin("lod");
     const Vec3d anchor(maps.anchor[0], maps.anchor[1], maps.anchor[2]);
-    LodSource source = joined(mesh, anchor);
+    LodSource source = joined(mesh, anchor, task);
     Vector<ChartCuts> cuts;
     for (uint32_t chart : maps.charts)
         cuts.emplace_back(partition.charts[chart], anchor);
