@@ -91,12 +91,12 @@ gtx_result gtx_rtin_build(const gtx_rtin_source *source, const gtx_allocator *al
                           gtx_rtin *out, gtx_rtin_node *nodes, gtx_rtin_block *blocks,
                           gtx_error *error);
 
-/* How far the surface of the cell from a node on is from two triangles, in codes: in its middle,
- * wherever its diagonal is (`row`: nodes a row). */
-static inline float gtx_rtin_twist(const gtx_rtin_node *node, size_t row)
+/* How far the surface of the cell from a node on is from two triangles, in fourths of a code: in
+ * its middle, wherever its diagonal is (`row`: nodes a row). */
+static inline uint32_t gtx_rtin_twist(const gtx_rtin_node *node, size_t row)
 {
     const int32_t twist = node[0].code - node[1].code - node[row].code + node[row + 1].code;
-    return (float)(twist < 0 ? -twist : twist) / 4;
+    return (uint32_t)(twist < 0 ? -twist : twist);
 }
 
 /* twist.c: finds the most of that, and adds it to the `error` of the nodes at which halves of cells

@@ -12,7 +12,7 @@ void gtx_rtin_add_twist(const gtx_grid *finest, gtx_rtin *rtin, const gtx_rtin_n
     for (uint32_t y = 0; y + 1 < finest->nodes_y; ++y)
         for (uint32_t x = 0; x + 1 < finest->nodes_x; ++x) {
             const size_t at = y * row + x;
-            const float twist = gtx_rtin_twist(&nodes[at], row);
+            const float twist = (float)gtx_rtin_twist(&nodes[at], row) / 4;
             if (!(twist > 0) || !finest->solid[(size_t)y * (finest->nodes_x - 1) + x])
                 continue;
             const float middle = 0.25f * (float)(nodes[at].code + nodes[at + 1].code +

@@ -9,6 +9,7 @@ typedef struct patch_view {
     double side[GTX_FRUSTUM_SIDES][4];
     uint32_t side_count;      /* that cut the patch */
     double eye[4], w[4];      /* w: of clip space */
+    double toward[3][4];      /* the way to the eye in object space, as eye[3] scales it */
     bool two_sided;
     double scale;             /* pixels square an object unit cubed, for pixels_of */
 } patch_view;
@@ -46,9 +47,13 @@ static patch_view view_of(const gtx_frustum *f, const gtx_model *model, uint32_t
         if (gtx_plane_at(&f->side[k], sphere) < f->side[k].slope * sphere[3])
             take_to_grid(f->side[k].row, record, v.side[v.side_count++]);
     take_to_grid(f->w.row, record, v.w);
-    for (int r = 0; r < 3; ++r)
+    for (int r = 0; r < 3; ++r) {
+        double row[4] = {0, 0, 0, f->eye[r]};
+        row[r] = -f->eye[3];
+        take_to_grid(row, record, v.toward[r]);
         for (int k = 0; k < 4; ++k)
             v.eye[r] += (double)record[GTX_RECORD_TO_GRID + r][k] * f->eye[k];
+    }
     v.eye[3] = f->eye[3];
     v.scale = f->pixels * f->pixels * volume_of(record);
     return v;
@@ -83,25 +88,29 @@ static double least_product(const float rise[2], double low, double high)
     return lesser(lesser(rise[0] * low, rise[0] * high), lesser(rise[1] * low, rise[1] * high));
 }
 
-/* Pixels that a block covers, roughly: `above` is how far the eye is above its slope. */
-static double pixels_of(const patch_view *v, const gtx_frustum *f, const gtx_slab *s,
-                        gtx_record record)
+static double at(const double row[4], const double x[3])
 {
-    double grid[3], away = 0, w = f->w.row[3], above = v->eye[2];
+    return row[0] * x[0] + row[1] * x[1] + row[2] * x[2] + row[3];
+}
+
+/* Pixels that a block covers, roughly: `above` is how far the eye is above its slope. */
+static double pixels_of(const patch_view *v, const gtx_slab *s)
+{
+    double grid[3], above = v->eye[2], away = 0;
+    const double middle = ((double)s->height[0] + s->height[1]) / 2;
+    grid[2] = middle;
     for (int k = 0; k < 2; ++k) {
-        grid[k] = (s->low[k] + s->high[k]) / 2;
-        above -= s->slope[k] * v->eye[k];
+        const double slope = s->slope[k];
+        grid[k] = ((double)s->low[k] + s->high[k]) / 2;
+        grid[2] += slope * grid[k];
+        above -= slope * v->eye[k];
     }
-    const double middle = (s->height[0] + s->height[1]) / 2;
-    grid[2] = middle + s->slope[0] * grid[0] + s->slope[1] * grid[1];
     above -= v->eye[3] * middle;
     for (int r = 0; r < 3; ++r) {
-        const double p = record[GTX_RECORD_ORIGIN][r] + record[GTX_RECORD_AXIS_X][r] * grid[0] +
-                         record[GTX_RECORD_AXIS_Y][r] * grid[1] +
-                         record[GTX_RECORD_AXIS_Z][r] * grid[2];
-        away += pow(f->eye[r] - f->eye[3] * p, 2);
-        w += f->w.row[r] * p;
+        const double d = at(v->toward[r], grid);
+        away += d * d;
     }
+    const double w = at(v->w, grid);
     const double area = v->scale * (s->high[0] - s->low[0]) * (s->high[1] - s->low[1]);
     const double square = sqrt(away) * w * w;
     return area * fabs(above) / (square > 1e-300 ? square : 1e-300);
@@ -151,10 +160,10 @@ gtx_cover gtx_cover_of(const gtx_frustum *f, const gtx_model *model, uint32_t pa
         if (!is_seen(&v, &slabs[i]) ||
             (occlusion && gtx_is_slab_hidden(occlusion, &over, &slabs[i])))
             continue;
-        const double pixels = pixels_of(&v, f, &slabs[i], model->records[patch]);
-        const double side = sqrt(pixels) + (tiles ? GTX_TILE : 0);
+        const double pixels = pixels_of(&v, &slabs[i]);
+        const double side = tiles ? sqrt(pixels) + GTX_TILE : 0;
         c.pixels += pixels;
-        c.cast += side * side;
+        c.cast += tiles ? side * side : pixels;
         shown[c.blocks++] = i;
     }
     return c;

@@ -6,70 +6,99 @@
 #include <string.h>
 
 /* Of a cell; and those that a side is cut into. */
-enum { PARTS = GTX_GRID_PARTS, SIDE_PARTS = 2 };
+enum { PARTS = GTX_GRID_PARTS, SIDE_PARTS = 2, ROW = GTX_BLOCK_ROW };
 
-gtx_division gtx_cell_division(const gtx_refining *r, int64_t x, int64_t y)
+/* How a cell is drawn: as two halves, which are as far from its surface as its diagonal; as four
+ * triangles around its middle, which are a fourth as far from it; or so its four parts, a fourth
+ * as far again. */
+enum { HALVES = 0, QUARTERS = 1, IN_PARTS = 2 };
+
+static double greater(double a, double b)
 {
-    if (!(r->code > 0) || x < 0 || y < 0 || x + 1 >= r->row ||
-        y >= (int64_t)r->rtin->rows * GTX_RTIN_CELLS)
-        return GTX_CELL_HALVES;
-    const gtx_rtin_node *n = &r->nodes[(size_t)y * r->row + (size_t)x];
-    const double twist = (double)gtx_rtin_twist(n, r->row);
-    if (!(n->bits & GTX_RTIN_SOLID) || !(twist > 0))
-        return GTX_CELL_HALVES;
-    const double middle = 0.25 * (n[0].code + n[1].code + n[r->row].code + n[r->row + 1].code);
-    const double spread = fmax(fmax(fabs(n[0].code - middle), fabs(n[1].code - middle)),
-                               fmax(fabs(n[r->row].code - middle),
-                                    fabs(n[r->row + 1].code - middle)));
-    const double w = r->w[0] * ((double)x + 0.5) + r->w[1] * ((double)y + 0.5) +
-                     r->w[2] * middle + r->w[3] - r->reach_of_cell - fabs(r->w[2]) * spread;
-    const double error = twist * r->code;
-    return error > 4 * w ? GTX_CELL_PARTS : error > w ? GTX_CELL_QUARTERS : GTX_CELL_HALVES;
+    return a > b ? a : b;
+}
+
+static uint8_t division_of(const gtx_refining *r, const gtx_refined *block, uint32_t at)
+{
+    const gtx_rtin_node *n = &block->nodes[at];
+    const uint32_t a = n[0].code, b = n[1].code, c = n[ROW].code, d = n[ROW + 1].code;
+    const double x = block->x + at % ROW - 0.5, y = block->y + at / ROW - 0.5;
+    const double middle = 0.25 * (a + b + c + d);
+    const double spread = greater(greater(fabs(a - middle), fabs(b - middle)),
+                                  greater(fabs(c - middle), fabs(d - middle)));
+    const double w = r->w[0] * x + r->w[1] * y + r->w[2] * middle + r->w[3] - r->reach_of_cell -
+                     fabs(r->w[2]) * spread;
+    const double error = 0.25 * gtx_rtin_twist(n, ROW) * r->code;
+    return error > 4 * w ? IN_PARTS : error > w ? QUARTERS : HALVES;
+}
+
+static void find_divided(const gtx_refining *r, gtx_refined *b)
+{
+    enum { CELLS = GTX_RTIN_CELLS + 2 };
+    uint8_t twisted[CELLS * CELLS]; /* which they are cannot be foreseen: no branch asks */
+    uint32_t count = 0;
+    b->found = true;
+    memset(b->divided, HALVES, sizeof b->divided);
+    for (uint32_t y = 0; y < CELLS; ++y)
+        for (uint32_t at = ROW * y; at < ROW * y + CELLS; ++at) {
+            const gtx_rtin_node *n = &b->nodes[at];
+            twisted[count] = (uint8_t)at;
+            count += (gtx_rtin_twist(n, ROW) > b->twist) & (n->bits / GTX_RTIN_SOLID & 1);
+        }
+    for (uint32_t i = 0; i < count; ++i)
+        b->divided[twisted[i]] = division_of(r, b, twisted[i]);
+}
+
+bool gtx_is_divided(const gtx_refining *r, gtx_refined *b, const uint8_t cell[2])
+{
+    if (!b->found)
+        find_divided(r, b);
+    const uint8_t *d = &b->divided[gtx_block_node(cell[0], cell[1])];
+    return *d || (d[-1] | d[1] | d[-ROW] | d[ROW]) & IN_PARTS;
 }
 
 /* Triangles of half a cell so far. */
 typedef struct cut {
-    uint32_t count, (*out)[3][2];
+    const gtx_refined *block;
+    uint32_t count;
+    gtx_grid_point (*out)[3];
 } cut;
 
-static void add(cut *c, const uint32_t p[2], const uint32_t q[2], const uint32_t o[2])
+static void add(cut *c, gtx_grid_point p, gtx_grid_point q, gtx_grid_point o)
 {
-    uint32_t (*to)[2] = c->out[c->count++];
-    memcpy(to[0], p, sizeof to[0]);
-    memcpy(to[1], q, sizeof to[1]);
-    memcpy(to[2], o, sizeof to[2]);
+    gtx_grid_point *to = c->out[c->count++];
+    to[0] = p;
+    to[1] = q;
+    to[2] = o;
 }
 
-/* The point of a line that is k parts away from its first end. */
-static void point_of(const uint32_t p[2], const uint32_t q[2], uint32_t k, uint32_t out[2])
+/* Half way. */
+static gtx_grid_point between(const gtx_refined *b, gtx_grid_point p, gtx_grid_point q)
 {
-    for (int a = 0; a < 2; ++a)
-        out[a] = ((SIDE_PARTS - k) * p[a] + k * q[a]) / SIDE_PARTS;
+    const uint32_t x = (p.x + q.x) / SIDE_PARTS, y = (p.y + q.y) / SIDE_PARTS;
+    const uint32_t i = x % PARTS, j = y % PARTS;
+    const gtx_rtin_node *n = &b->nodes[gtx_block_node(x / PARTS, y / PARTS)];
+    return (gtx_grid_point){x, y, (PARTS - j) * ((PARTS - i) * n[0].code + i * n[1].code) +
+                                      j * ((PARTS - i) * n[ROW].code + i * n[ROW + 1].code)};
 }
 
-/* Triangles from the first `count` parts of a side to a point beyond. */
-static void add_fan(cut *c, const uint32_t p[2], const uint32_t q[2], uint32_t count,
-                    const uint32_t to[2])
+/* Triangles from a side, as a whole or from its parts, to a point beyond. */
+static void add_side(cut *c, bool is_cut, gtx_grid_point p, gtx_grid_point q, gtx_grid_point to)
 {
-    for (uint32_t k = 0; k < count; ++k) {
-        uint32_t from[2], next[2];
-        point_of(p, q, k, from);
-        point_of(p, q, k + 1, next);
-        add(c, from, next, to);
-    }
+    const gtx_grid_point middle = is_cut ? between(c->block, p, q) : q;
+    add(c, p, middle, to);
+    if (is_cut)
+        add(c, middle, q, to);
 }
 
 /* A fourth of the cell, and half of two: around the middle of each. */
-static void add_parts(cut *c, uint32_t corner[3][2])
+static void add_parts(cut *c, const gtx_grid_point corner[3])
 {
-    const uint32_t *a = corner[0], *b = corner[1], *o = corner[2];
-    uint32_t beside_a[2], beside_b[2], middle[2], inner[2], toward_a[2], toward_b[2];
-    point_of(o, a, 1, beside_a);
-    point_of(o, b, 1, beside_b);
-    point_of(a, b, 1, middle);
-    point_of(o, middle, 1, inner);
-    point_of(a, middle, 1, toward_a);
-    point_of(b, middle, 1, toward_b);
+    const gtx_refined *block = c->block;
+    const gtx_grid_point a = corner[0], b = corner[1], o = corner[2], middle = between(block, a, b);
+    const gtx_grid_point beside_a = between(block, o, a), beside_b = between(block, o, b);
+    const gtx_grid_point inner = between(block, o, middle), toward_a = between(block, a, middle);
+    const gtx_grid_point toward_b = between(block, b, middle);
     add(c, o, beside_a, inner);
     add(c, beside_a, middle, inner);
     add(c, middle, beside_b, inner);
@@ -80,51 +109,36 @@ static void add_parts(cut *c, uint32_t corner[3][2])
     add(c, b, beside_b, toward_b);
 }
 
-/* Whether the cell beyond the side from p to q of the cell at `cell` has points on it. */
-static bool is_cut(const gtx_refining *r, const uint32_t cell[2], const uint32_t p[2],
-                   const uint32_t q[2])
+/* Whether the cell beyond the side from p to q of a cell has points on it. */
+static bool is_cut(const uint8_t *divided, const uint8_t cell[2], gtx_grid_point p,
+                   gtx_grid_point q)
 {
-    int64_t beyond[2];
-    for (int k = 0; k < 2; ++k)
-        beyond[k] = p[k] != q[k] ? cell[k] : p[k] == cell[k] * PARTS ? (int64_t)cell[k] - 1
-                                                                     : (int64_t)cell[k] + 1;
-    return gtx_cell_division(r, beyond[0], beyond[1]) == GTX_CELL_PARTS;
+    const int beyond = p.x == q.x ? p.x == PARTS * cell[0] ? -1 : 1
+                                  : p.y == PARTS * cell[1] ? -ROW : ROW;
+    return divided[beyond] == IN_PARTS;
 }
 
-uint32_t gtx_divide_half(const gtx_refining *r, uint32_t corner[3][2],
-                         uint32_t out[GTX_HALF_TRIANGLES][3][2])
+uint32_t gtx_divide_half(const gtx_refined *block, const uint8_t cell[2],
+                         const gtx_grid_point corner[3],
+                         gtx_grid_point out[GTX_HALF_TRIANGLES][3])
 {
-    const uint32_t *a = corner[0], *b = corner[1], *o = corner[2];
-    uint32_t cell[2], middle[2];
-    cut c = {0, out};
-    for (int k = 0; k < 2; ++k) {
-        middle[k] = (a[k] + b[k]) / 2;
-        cell[k] = middle[k] / PARTS;
-    }
-    const gtx_division division = gtx_cell_division(r, cell[0], cell[1]);
-    if (division == GTX_CELL_PARTS) {
+    const gtx_grid_point a = corner[0], b = corner[1], o = corner[2];
+    const uint8_t *divided = &block->divided[gtx_block_node(cell[0], cell[1])];
+    const bool cut_a = is_cut(divided, cell, o, a), cut_b = is_cut(divided, cell, b, o);
+    cut c = {block, 0, out};
+    if (*divided == IN_PARTS) {
         add_parts(&c, corner);
-        return c.count;
-    }
-    const bool cut_a = is_cut(r, cell, o, a), cut_b = is_cut(r, cell, b, o);
-    if (division == GTX_CELL_QUARTERS) {
-        if (cut_a)
-            add_fan(&c, o, a, SIDE_PARTS, middle);
-        else
-            add(&c, o, a, middle);
-        if (cut_b)
-            add_fan(&c, b, o, SIDE_PARTS, middle);
-        else
-            add(&c, b, o, middle);
-    } else if (cut_a && cut_b) {
-        uint32_t last[2];
-        point_of(b, o, SIDE_PARTS - 1, last);
-        add_fan(&c, b, o, SIDE_PARTS - 1, a);
-        add_fan(&c, o, a, SIDE_PARTS, last);
+    } else if (*divided == QUARTERS) {
+        const gtx_grid_point middle = between(block, a, b);
+        add_side(&c, cut_a, o, a, middle);
+        add_side(&c, cut_b, b, o, middle);
     } else if (cut_a) {
-        add_fan(&c, o, a, SIDE_PARTS, b);
+        const gtx_grid_point last = cut_b ? between(block, b, o) : b;
+        if (cut_b)
+            add(&c, b, last, a);
+        add_side(&c, true, o, a, last);
     } else if (cut_b) {
-        add_fan(&c, b, o, SIDE_PARTS, a);
+        add_side(&c, true, b, o, a);
     } else {
         add(&c, a, b, o);
     }

@@ -73,10 +73,12 @@ typedef struct gtx_refining {
     uint32_t depth;           /* levels that are halved: all by their errors, or some anyway */
     bool by_error;
     double w[4], eye[4];      /* of clip space, over grid space; and there */
-    double reach[GTX_RTIN_LEVELS]; /* how much nearer may be what halving a middle changes */
+    double reach[GTX_RTIN_LEVELS]; /* how much nearer may be what halving a middle
+                                          changes */
     double scale;             /* w at which an error's unit is what the view allows */
     double code;              /* the same of a code; 0: no cell is divided */
     double reach_of_cell;
+    double per_unit, per_twist; /* over the scale, and over that of a fourth of a code */
     double near;              /* w below which all triangles are to be lit at vertices */
 } gtx_refining;
 
@@ -88,16 +90,48 @@ gtx_refining gtx_refine(const gtx_frustum *f, const gtx_model *model, uint32_t p
 /* Adds the triangles of a block. False without memory. */
 bool gtx_refine_block(const gtx_refining *r, uint32_t column, uint32_t row);
 
-/* divide.c: how a cell is drawn: as two halves, which are as far from its surface as its diagonal;
- * as four triangles around its middle, which are a fourth as far from it; or so its four parts, a
- * fourth as far again. */
-typedef enum gtx_division { GTX_CELL_HALVES, GTX_CELL_QUARTERS, GTX_CELL_PARTS } gtx_division;
-gtx_division gtx_cell_division(const gtx_refining *r, int64_t x, int64_t y);
-/* Cuts half a cell, its corners as those of a triangle, into triangles that meet those over cells
- * beside it. Returns how many; `out` gets their corners, in parts of a cell. */
+/* What is halved of a level in a block, wherever it is: middles of the error `all` and more, and of
+ * less than `none` not; and rough ones. */
+typedef struct gtx_halved {
+    uint32_t all, none;
+    uint16_t all_rough, any_rough; /* GTX_RTIN_ROUGH or 0 */
+} gtx_halved;
+
+/* Nodes of a block and around it, 16 a row: of those that there are none of, no cell is solid. */
+enum {
+    GTX_BLOCK_ROW = 16, GTX_BLOCK_NODES = GTX_BLOCK_ROW * (GTX_RTIN_CELLS + 3)
+};
+
+static inline uint32_t gtx_block_node(uint32_t x, uint32_t y)
+{
+    return GTX_BLOCK_ROW * (y + 1) + x + 1;
+}
+
+/* A block while its triangles are found. */
+typedef struct gtx_refined {
+    gtx_rtin_node nodes[GTX_BLOCK_NODES];
+    uint8_t divided[GTX_BLOCK_NODES]; /* how the cell from each on is: see divide.c */
+    bool found;               /* these are known */
+    gtx_rtin_block shown;
+    uint32_t x, y, *slots;    /* the first node */
+    bool front;               /* the eye is above all triangles */
+    uint32_t twist;           /* cells of no more are not divided */
+    gtx_halved halved[GTX_RTIN_LEVELS];
+} gtx_refined;
+
+/* A place in parts of cells of a block, and its height, GTX_GRID_PARTS^2 a code. */
+typedef struct gtx_grid_point {
+    uint32_t x, y, z;
+} gtx_grid_point;
+
+/* divide.c: whether a cell of a block is divided, or sides of it are. */
+bool gtx_is_divided(const gtx_refining *r, gtx_refined *b, const uint8_t cell[2]);
+/* Cuts half of such a cell, its corners as those of a triangle, into triangles that meet those over
+ * cells beside it. Returns how many; `out` gets their corners. */
 enum { GTX_HALF_TRIANGLES = 8 };
-uint32_t gtx_divide_half(const gtx_refining *r, uint32_t corner[3][2],
-                         uint32_t out[GTX_HALF_TRIANGLES][3][2]);
+uint32_t gtx_divide_half(const gtx_refined *b, const uint8_t cell[2],
+                         const gtx_grid_point corner[3],
+                         gtx_grid_point out[GTX_HALF_TRIANGLES][3]);
 
 /* mix.c: takes those patches out of the planner's plan that are drawn so, and those that they hide,
  * and fills its grids with the blocks of theirs that are in view and may face the eye, in the order

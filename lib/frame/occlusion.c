@@ -219,8 +219,9 @@ static void fill_triangle(const gtx_occlusion *o, const point *a, const point *b
 /* Whether it is no larger than what counts around things hidden. */
 static bool is_small(const point *a, const point *b, const point *c)
 {
-    return fmaxf(fmaxf(fabsf(a->x - b->x), fabsf(b->x - c->x)), fabsf(c->x - a->x)) <= AROUND &&
-           fmaxf(fmaxf(fabsf(a->y - b->y), fabsf(b->y - c->y)), fabsf(c->y - a->y)) <= AROUND;
+    const float most = AROUND;
+    return fabsf(a->x - b->x) <= most && fabsf(b->x - c->x) <= most && fabsf(c->x - a->x) <= most &&
+           fabsf(a->y - b->y) <= most && fabsf(b->y - c->y) <= most && fabsf(c->y - a->y) <= most;
 }
 
 gtx_patch_view gtx_occlusion_view(const gtx_occlusion *o, gtx_record record)

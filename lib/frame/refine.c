@@ -16,6 +16,12 @@ static const double near_texel_shaded = 4;
 /* All bytes of a slot without a vertex. */
 enum { NO_VERTEX = 0xff };
 
+/* fmax is a call. */
+static double greater(double a, double b)
+{
+    return a > b ? a : b;
+}
+
 /* The side of a texel, of a square of the same area. */
 static double texel_of(gtx_record record)
 {
@@ -52,103 +58,28 @@ gtx_refining gtx_refine(const gtx_frustum *f, const gtx_model *model, uint32_t p
         r.depth -= 2 * (uint32_t)(f->level < 3 ? f->level : 3);
     /* A middle's triangles reach as far as its halves' middles; those of the finest level a
      * cell. */
-    double reach = fmax(fabs(w[0]), fabs(w[1]));
+    double reach = greater(fabs(w[0]), fabs(w[1]));
     r.reach_of_cell = (fabs(w[0]) + fabs(w[1])) / 2;
+    const double rise = rtin->rise[GTX_RTIN_LEVELS - 1];
     if (rtin->twist > 0)
-        reach = fmax(reach, 2 * (r.reach_of_cell + fabs(w[2]) * rtin->rise[GTX_RTIN_LEVELS - 1]));
+        reach = greater(reach, 2 * (r.reach_of_cell + fabs(w[2]) * rise));
     /* Where a patch is so far away that no cell is to be divided, none is looked at. */
     const double code = f->scale * (double)rtin->code;
     const double least = gtx_plane_at(&f->w, sphere) - f->w.slope * (double)sphere[3];
     if (r.by_error && code * (double)rtin->twist > least - reach)
         r.code = code;
+    r.per_unit = r.scale > 0 ? 1 / r.scale : 0;
+    r.per_twist = r.code > 0 ? 4 / r.code : 0;
     for (uint32_t level = GTX_RTIN_LEVELS; level-- > 0;) {
         const double away = GTX_RTIN_CELLS >> (level / 2 + 1);
         const double x = fabs(w[0]) * away, y = fabs(w[1]) * away;
         if (level + 1 < GTX_RTIN_LEVELS)
-            reach += (level & 1 ? (x + y) / 2 : fmax(x, y)) + fabs(w[2]) * rtin->rise[level];
+            reach += (level & 1 ? (x + y) / 2 : greater(x, y)) + fabs(w[2]) * rtin->rise[level];
         r.reach[level] = reach;
     }
     memset(grids->slots.data, NO_VERTEX, r.row * ((size_t)rtin->rows * GTX_RTIN_CELLS + 1) *
                                              sizeof(uint32_t));
     return r;
-}
-
-/* Whether triangles are to end at a middle. */
-static bool is_halved(const gtx_refining *r, uint32_t level, uint32_t x, uint32_t y)
-{
-    if (level >= r->depth)
-        return false;
-    const gtx_rtin_node *n = &r->nodes[y * r->row + x];
-    if (!r->by_error)
-        return true;
-    const uint32_t error = n->bits & GTX_RTIN_MAX_ERROR;
-    const double w = r->w[0] * x + r->w[1] * y + r->w[2] * n->code + r->w[3] - r->reach[level];
-    return (error && error * r->scale > w) || (n->bits & GTX_RTIN_ROUGH && w < r->near);
-}
-
-/* The vertex of a node, which is there already where its slot tells of it. */
-static uint32_t vertex_of(const gtx_refining *r, uint32_t x, uint32_t y)
-{
-    gtx_grids *g = r->grids;
-    gtx_grid_vertex *vertices = g->vertices.data;
-    const uint32_t node = y * r->row + x;
-    uint32_t *slot = (uint32_t *)g->slots.data + node;
-    if (*slot != UINT32_MAX)
-        return *slot;
-    *slot = g->vertex_count++;
-    vertices[*slot] = (gtx_grid_vertex){.x = (uint16_t)(GTX_GRID_PARTS * x),
-                                        .y = (uint16_t)(GTX_GRID_PARTS * y),
-                                        .code = r->nodes[node].code, .patch = r->patch};
-    return *slot;
-}
-
-/* The same of a place in parts of a cell; between nodes each triangle has its own. */
-static uint32_t vertex_between(const gtx_refining *r, const uint32_t at[2])
-{
-    enum { PARTS = GTX_GRID_PARTS };
-    const uint32_t x = at[0] / PARTS, y = at[1] / PARTS, i = at[0] % PARTS, j = at[1] % PARTS;
-    if (!i && !j)
-        return vertex_of(r, x, y);
-    const gtx_rtin_node *n = &r->nodes[y * r->row + x];
-    const uint32_t across = i ? 1 : 0, down = j ? r->row : 0; /* on a side there may be no other */
-    const uint32_t height = (PARTS - j) * ((PARTS - i) * n[0].code + i * n[across].code) +
-                            j * ((PARTS - i) * n[down].code + i * n[down + across].code);
-    gtx_grid_vertex *vertices = r->grids->vertices.data;
-    vertices[r->grids->vertex_count] = (gtx_grid_vertex){
-        .x = (uint16_t)at[0], .y = (uint16_t)at[1], .code = (uint16_t)(height / (PARTS * PARTS)),
-        .rest = (uint16_t)(height % (PARTS * PARTS)), .patch = r->patch};
-    return r->grids->vertex_count++;
-}
-
-/* Whether the eye is above the plane through corners, counterclockwise seen from above. */
-static bool is_front(const gtx_refining *r, const gtx_grid_vertex *const corner[3])
-{
-    double at[3], side[2][3];
-    gtx_grid_place(corner[0], at);
-    for (int i = 0; i < 2; ++i) {
-        gtx_grid_place(corner[i + 1], side[i]);
-        for (int k = 0; k < 3; ++k)
-            side[i][k] -= at[k];
-    }
-    const double *a = side[0], *b = side[1], *e = r->eye;
-    double above = 0;
-    for (int k = 0; k < 3; ++k) {
-        const int i = (k + 1) % 3, j = (k + 2) % 3;
-        above += (a[i] * b[j] - a[j] * b[i]) * (e[k] - e[3] * at[k]);
-    }
-    return above >= 0;
-}
-
-/* What shows of a block, its first node, and whether the eye is above all of its triangles. */
-typedef struct place {
-    gtx_rtin_block shown;
-    uint32_t x, y;
-    bool front;
-} place;
-
-static double greater(double a, double b)
-{
-    return a > b ? a : b;
 }
 
 /* Whether the eye e is above the planes of all triangles of a slab whose cells are all there. That
@@ -169,97 +100,215 @@ static bool is_all_front(const double e[4], const gtx_slab *s)
     return above >= 0;
 }
 
+static const gtx_rtin_node *node_at(const gtx_refined *b, const uint8_t at[2])
+{
+    return &b->nodes[gtx_block_node(at[0], at[1])];
+}
+
 /* How many corners of half a cell show: none where there is no cell. Outlines cross it in straight
  * lines. */
-static int shown_corners(const gtx_refining *r, const place *at, const gtx_rtin_triangle *t)
+static int shown_corners(const gtx_refined *b, const gtx_rtin_triangle *t)
 {
-    uint32_t x = GTX_RTIN_CELLS, y = GTX_RTIN_CELLS;
     int shown = 0;
-    for (int c = 0; c < 3; ++c) {
-        const uint32_t i = t->corner[c][0], j = t->corner[c][1];
-        shown += (r->nodes[(at->y + j) * r->row + at->x + i].bits & GTX_RTIN_WITHIN) != 0;
-        x = i < x ? i : x;
-        y = j < y ? j : y;
-    }
-    return r->nodes[(at->y + y) * r->row + at->x + x].bits & GTX_RTIN_SOLID ? shown : 0;
+    for (int c = 0; c < 3; ++c)
+        shown += (node_at(b, t->corner[c])->bits & GTX_RTIN_WITHIN) != 0;
+    return node_at(b, t->middle)->bits & GTX_RTIN_SOLID ? shown : 0;
 }
 
 /* What a triangle that is not halved is drawn by, or GTX_GRID_LOOKS where nothing shows of it.
  * Where it is larger than a cell outlines and rough normals are those of maps. */
-static uint32_t looks_of(const gtx_refining *r, const place *at, const gtx_rtin_triangle *t,
+static uint32_t looks_of(const gtx_refining *r, const gtx_refined *b, const gtx_rtin_triangle *t,
                          uint32_t level)
 {
-    const uint32_t x = at->x + t->middle[0], y = at->y + t->middle[1];
-    const bool whole = (at->shown.whole & t->parts) == t->parts;
+    const bool whole = (b->shown.whole & t->parts) == t->parts;
     if (level == GTX_RTIN_LEVELS) {
-        const int shown = whole ? 3 : shown_corners(r, at, t);
+        const int shown = whole ? 3 : shown_corners(b, t);
         return shown ? (r->mapped ? GTX_GRID_MAPPED : 0) + (shown < 3 ? GTX_GRID_TRIMMED : 0)
                      : GTX_GRID_LOOKS;
     }
     if (!whole)
         return GTX_GRID_MAPPED + GTX_GRID_TRIMMED;
-    return r->mapped || r->nodes[y * r->row + x].bits & GTX_RTIN_ROUGH ? GTX_GRID_MAPPED : 0;
+    return r->mapped || node_at(b, t->middle)->bits & GTX_RTIN_ROUGH ? GTX_GRID_MAPPED : 0;
 }
 
-static void add_drawn(const gtx_refining *r, const place *at, const uint32_t index[3],
+/* Whether the eye is above the plane through corners, counterclockwise seen from above. */
+static bool is_front(const gtx_refining *r, const gtx_refined *b, const gtx_grid_point corner[3])
+{
+    const gtx_grid_point *p = corner;
+    const int32_t u[3] = {(int32_t)(p[1].x - p->x), (int32_t)(p[1].y - p->y),
+                          (int32_t)(p[1].z - p->z)};
+    const int32_t v[3] = {(int32_t)(p[2].x - p->x), (int32_t)(p[2].y - p->y),
+                          (int32_t)(p[2].z - p->z)};
+    /* In grid space; z is in smaller parts than x and y. */
+    const double parts = GTX_GRID_PARTS;
+    const double x = (int32_t)(GTX_GRID_PARTS * b->x + p->x) / parts;
+    const double y = (int32_t)(GTX_GRID_PARTS * b->y + p->y) / parts;
+    const double z = (int32_t)p->z / (parts * parts);
+    return (u[1] * v[2] - u[2] * v[1]) * (r->eye[0] - r->eye[3] * x) +
+               (u[2] * v[0] - u[0] * v[2]) * (r->eye[1] - r->eye[3] * y) +
+               GTX_GRID_PARTS * (u[0] * v[1] - u[1] * v[0]) * (r->eye[2] - r->eye[3] * z) >= 0;
+}
+
+/* The vertex of a point: that of its node, which is there already where its slot tells of it;
+ * between nodes each triangle has its own. */
+static uint32_t vertex_of(const gtx_refining *r, const gtx_refined *b, const gtx_grid_point *p)
+{
+    enum { PARTS = GTX_GRID_PARTS };
+    gtx_grids *g = r->grids;
+    gtx_grid_vertex *to = (gtx_grid_vertex *)g->vertices.data + g->vertex_count;
+    uint32_t *slot = b->slots + p->y / PARTS * r->row + p->x / PARTS;
+    if (!((p->x | p->y) % PARTS)) {
+        if (*slot != UINT32_MAX)
+            return *slot;
+        *slot = g->vertex_count;
+    }
+    *to = (gtx_grid_vertex){.x = (uint16_t)(PARTS * b->x + p->x),
+                            .y = (uint16_t)(PARTS * b->y + p->y),
+                            .code = (uint16_t)(p->z / (PARTS * PARTS)),
+                            .rest = (uint16_t)(p->z % (PARTS * PARTS)), .patch = r->patch};
+    return g->vertex_count++;
+}
+
+/* Adds a triangle if it is seen. */
+static void add_drawn(const gtx_refining *r, const gtx_refined *b, const gtx_grid_point corner[3],
                       uint32_t from_front)
 {
-    const gtx_grid_vertex *vertices = r->grids->vertices.data;
-    const gtx_grid_vertex *const corner[3] = {&vertices[index[0]], &vertices[index[1]],
-                                              &vertices[index[2]]};
-    const bool front = at->front || is_front(r, corner);
+    static const uint8_t turned[2][3] = {{0, 1, 2}, {1, 2, 0}};
+    const bool front = b->front || is_front(r, b, corner);
     const uint32_t looks = from_front + (front ? 0 : GTX_GRID_BEHIND);
     if (!front && !r->two_sided)
         return;
     uint32_t *to = (uint32_t *)r->grids->indices[looks].data + r->grids->index_count[looks];
-    for (int c = 0; c < 3; ++c)
-        to[(c + r->turn) % 3] = index[c];
     r->grids->index_count[looks] += 3;
+    for (int c = 0; c < 3; ++c)
+        to[turned[r->turn][c]] = vertex_of(r, b, &corner[c]);
 }
 
-/* Half a cell, divided as its surface and those beside it ask for. What is not whole is cut by
- * maps. */
-static void add_half(const gtx_refining *r, const place *at, const gtx_rtin_triangle *t,
-                     uint32_t from_front)
+/* A triangle that is not halved. Halves of cells are divided as their surface and those beside it
+ * ask for; what is not whole is then cut by maps. */
+static void add_whole(const gtx_refining *r, gtx_refined *b, const gtx_rtin_triangle *t,
+                      uint32_t level)
 {
-    uint32_t corner[3][2], divided[GTX_HALF_TRIANGLES][3][2];
-    for (int c = 0; c < 3; ++c) {
-        corner[c][0] = GTX_GRID_PARTS * (at->x + t->corner[c][0]);
-        corner[c][1] = GTX_GRID_PARTS * (at->y + t->corner[c][1]);
+    gtx_grid_point corner[3], divided[GTX_HALF_TRIANGLES][3];
+    const gtx_grid_point *from = corner;
+    uint32_t looks = looks_of(r, b, t, level), count = 1;
+    if (looks == GTX_GRID_LOOKS)
+        return;
+    for (int c = 0; c < 3; ++c)
+        corner[c] = (gtx_grid_point){
+            GTX_GRID_PARTS * t->corner[c][0], GTX_GRID_PARTS * t->corner[c][1],
+            GTX_GRID_PARTS * GTX_GRID_PARTS * node_at(b, t->corner[c])->code};
+    if (level == GTX_RTIN_LEVELS && r->code > 0 && gtx_is_divided(r, b, t->middle)) {
+        count = gtx_divide_half(b, t->middle, corner, divided);
+        from = divided[0];
+        if (count > 1 && looks & GTX_GRID_TRIMMED)
+            looks |= GTX_GRID_MAPPED;
     }
-    const uint32_t count = gtx_divide_half(r, corner, divided);
-    if (count > 1 && from_front & GTX_GRID_TRIMMED)
-        from_front |= GTX_GRID_MAPPED;
-    for (uint32_t i = 0; i < count; ++i) {
-        uint32_t index[3];
-        for (int c = 0; c < 3; ++c)
-            index[c] = vertex_between(r, divided[i][c]);
-        add_drawn(r, at, index, from_front);
-    }
+    for (uint32_t i = 0; i < count; ++i)
+        add_drawn(r, b, from + 3 * i, looks);
+}
+
+/* Whether triangles are to end at a middle. */
+static bool is_halved(const gtx_refining *r, const gtx_refined *b, const uint8_t middle[2],
+                      uint32_t level)
+{
+    const gtx_halved *h = &b->halved[level];
+    const gtx_rtin_node *n = node_at(b, middle);
+    const uint32_t error = n->bits & GTX_RTIN_MAX_ERROR;
+    if (error >= h->all || n->bits & h->all_rough)
+        return true;
+    if (error < h->none && !(n->bits & h->any_rough))
+        return false;
+    const double w = r->w[0] * (b->x + middle[0]) + r->w[1] * (b->y + middle[1]) +
+                     r->w[2] * n->code + r->w[3] - r->reach[level];
+    return error * r->scale > w || (n->bits & GTX_RTIN_ROUGH && w < r->near);
 }
 
 /* Adds what shows of a triangle, as a whole or its halves. */
-static void add(const gtx_refining *r, const place *at, uint32_t triangle, uint32_t level)
+static void add(const gtx_refining *r, gtx_refined *b, uint32_t triangle, uint32_t level)
 {
     const gtx_rtin_triangle *t = &r->grids->triangles[triangle];
-    if (!(at->shown.some & t->parts))
+    if (!(b->shown.some & t->parts))
         return;
-    if (is_halved(r, level, at->x + t->middle[0], at->y + t->middle[1])) {
-        add(r, at, 2 * triangle, level + 1);
-        add(r, at, 2 * triangle + 1, level + 1);
-        return;
-    }
-    const uint32_t from_front = looks_of(r, at, t, level);
-    if (from_front == GTX_GRID_LOOKS)
-        return;
-    if (level == GTX_RTIN_LEVELS && r->code > 0) {
-        add_half(r, at, t, from_front);
+    if (level == GTX_RTIN_LEVELS || !is_halved(r, b, t->middle, level)) {
+        add_whole(r, b, t, level);
         return;
     }
-    uint32_t index[3];
-    for (int c = 0; c < 3; ++c)
-        index[c] = vertex_of(r, at->x + t->corner[c][0], at->y + t->corner[c][1]);
-    add_drawn(r, at, index, from_front);
+    add(r, b, 2 * triangle, level + 1);
+    add(r, b, 2 * triangle + 1, level + 1);
+}
+
+/* The greatest whole number up to `most` that is no more than a value; 0 below that. */
+static uint32_t whole_of(double value, uint32_t most)
+{
+    return value < most ? value > 0 ? (uint32_t)value : 0 : most;
+}
+
+/* Finds what is halved by the range that w has in the block and beside it. */
+static void limit(const gtx_refining *r, gtx_refined *b, const uint32_t codes[2])
+{
+    const double rounding = 1e-12; /* much more than that of what is found at a node */
+    const double from[3] = {(double)b->x - 1, (double)b->y - 1, codes[0]};
+    const double to[3] = {b->x + GTX_RTIN_CELLS + 1, b->y + GTX_RTIN_CELLS + 1, codes[1]};
+    double low = r->w[3], high = r->w[3], off = fabs(r->w[3]) + r->reach[0];
+    for (int k = 0; k < 3; ++k) {
+        const double p = r->w[k] * from[k], q = r->w[k] * to[k];
+        low += p < q ? p : q;
+        high += p < q ? q : p;
+        off += fabs(p) + fabs(q);
+    }
+    low -= rounding * off;
+    high += rounding * off;
+    for (uint32_t level = 0; level < GTX_RTIN_LEVELS; ++level) {
+        const double least = low - r->reach[level], most = high - r->reach[level];
+        gtx_halved *h = &b->halved[level];
+        *h = (gtx_halved){0, 0, 0, 0};
+        if (level >= r->depth)
+            h->all = h->none = UINT32_MAX;
+        else if (r->by_error)
+            *h = (gtx_halved){1 + whole_of(most * r->per_unit, GTX_RTIN_MAX_ERROR),
+                              1 + whole_of(least * r->per_unit, GTX_RTIN_MAX_ERROR),
+                              most < r->near ? GTX_RTIN_ROUGH : 0,
+                              least < r->near ? GTX_RTIN_ROUGH : 0};
+    }
+    /* Corners are no farther from a cell's middle. */
+    const double spread = fabs(r->w[2]) * (codes[1] - codes[0]) / 2;
+    b->twist = whole_of((low - spread) * r->per_twist, 4 * UINT16_MAX);
+}
+
+/* Copies the nodes, and finds the range of their codes. */
+static void load(const gtx_refining *r, gtx_refined *b, uint32_t codes[2])
+{
+    enum { CELLS = GTX_RTIN_CELLS, SIDE = CELLS + 3, LANES = 2 * (SIDE + 1) };
+    const uint32_t last = r->rtin->rows * CELLS;
+    const bool right = b->x + CELLS + 1 < r->row;
+    uint16_t low[LANES], high[LANES];
+    memset(low, 0xff, sizeof low);
+    memset(high, 0, sizeof high);
+    for (uint32_t j = 0; j < SIDE; ++j) {
+        const uint32_t y = b->y + j > 1 ? b->y + j - 1 : 0;
+        const gtx_rtin_node *from = &r->nodes[(y < last ? y : last) * r->row + b->x];
+        gtx_rtin_node *to = &b->nodes[GTX_BLOCK_ROW * j];
+        memcpy(to + 1, from, (CELLS + 1) * sizeof *to);
+        to[0] = b->x ? from[-1] : (gtx_rtin_node){from[0].code, 0};
+        to[SIDE - 1] = to[SIDE] = from[right ? CELLS + 1 : CELLS];
+        for (uint32_t i = 0; !b->y && !j && i < SIDE; ++i)
+            to[i].bits = 0;
+    }
+    for (uint32_t j = 0; j < SIDE; ++j) {
+        uint16_t lane[LANES];
+        memcpy(lane, &b->nodes[GTX_BLOCK_ROW * j], sizeof lane);
+        for (int k = 0; k < LANES; ++k) {
+            low[k] = lane[k] < low[k] ? lane[k] : low[k];
+            high[k] = lane[k] > high[k] ? lane[k] : high[k];
+        }
+    }
+    codes[0] = low[0];
+    codes[1] = high[0];
+    for (int k = 2; k < LANES; k += 2) {
+        codes[0] = low[k] < codes[0] ? low[k] : codes[0];
+        codes[1] = high[k] > codes[1] ? high[k] : codes[1];
+    }
 }
 
 /* Room for all that a block may add. */
@@ -280,11 +329,19 @@ static bool reserve(const gtx_refining *r)
 bool gtx_refine_block(const gtx_refining *r, uint32_t column, uint32_t row)
 {
     const uint32_t block = row * r->rtin->columns + column;
-    place at = {r->blocks[block], column * GTX_RTIN_CELLS, row * GTX_RTIN_CELLS, false};
+    uint32_t codes[2];
+    gtx_refined b;
     if (!reserve(r))
         return false;
-    at.front = at.shown.whole == UINT16_MAX && is_all_front(r->eye, &r->slabs[block]);
-    add(r, &at, 2, 0);
-    add(r, &at, 3, 0);
+    b.found = false;
+    b.shown = r->blocks[block];
+    b.front = b.shown.whole == UINT16_MAX && is_all_front(r->eye, &r->slabs[block]);
+    b.x = column * GTX_RTIN_CELLS;
+    b.y = row * GTX_RTIN_CELLS;
+    b.slots = (uint32_t *)r->grids->slots.data + b.y * r->row + b.x;
+    load(r, &b, codes);
+    limit(r, &b, codes);
+    add(r, &b, 2, 0);
+    add(r, &b, 3, 0);
     return true;
 }
