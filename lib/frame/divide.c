@@ -39,6 +39,7 @@ static void find_divided(const gtx_refining *r, gtx_refined *b)
     uint32_t count = 0;
     b->found = true;
     memset(b->divided, HALVES, sizeof b->divided);
+    memset(b->places, 0xff, sizeof b->places);
     for (uint32_t y = 0; y < CELLS; ++y)
         for (uint32_t at = ROW * y; at < ROW * y + CELLS; ++at) {
             const gtx_rtin_node *n = &b->nodes[at];

@@ -99,7 +99,8 @@ typedef struct gtx_halved {
 
 /* Nodes of a block and around it, 16 a row: of those that there are none of, no cell is solid. */
 enum {
-    GTX_BLOCK_ROW = 16, GTX_BLOCK_NODES = GTX_BLOCK_ROW * (GTX_RTIN_CELLS + 3)
+    GTX_BLOCK_ROW = 16, GTX_BLOCK_NODES = GTX_BLOCK_ROW * (GTX_RTIN_CELLS + 3),
+    GTX_BLOCK_PLACES = GTX_RTIN_CELLS * GTX_GRID_PARTS + 1
 };
 
 static inline uint32_t gtx_block_node(uint32_t x, uint32_t y)
@@ -111,7 +112,8 @@ static inline uint32_t gtx_block_node(uint32_t x, uint32_t y)
 typedef struct gtx_refined {
     gtx_rtin_node nodes[GTX_BLOCK_NODES];
     uint8_t divided[GTX_BLOCK_NODES]; /* how the cell from each on is: see divide.c */
-    bool found;               /* these are known */
+    bool found;               /* these are known, and slots of places between nodes are there: */
+    uint32_t places[GTX_BLOCK_PLACES * GTX_BLOCK_PLACES]; /* their vertices */
     gtx_rtin_block shown;
     uint32_t x, y, *slots;    /* the first node */
     bool front;               /* the eye is above all triangles */

@@ -149,28 +149,26 @@ static bool is_front(const gtx_refining *r, const gtx_refined *b, const gtx_grid
                GTX_GRID_PARTS * (u[0] * v[1] - u[1] * v[0]) * (r->eye[2] - r->eye[3] * z) >= 0;
 }
 
-/* The vertex of a point: that of its node, which is there already where its slot tells of it;
- * between nodes each triangle has its own. */
-static uint32_t vertex_of(const gtx_refining *r, const gtx_refined *b, const gtx_grid_point *p)
+/* The vertex of a point, which is there already where its slot tells of it. */
+static uint32_t vertex_of(const gtx_refining *r, gtx_refined *b, const gtx_grid_point *p)
 {
     enum { PARTS = GTX_GRID_PARTS };
     gtx_grids *g = r->grids;
-    gtx_grid_vertex *to = (gtx_grid_vertex *)g->vertices.data + g->vertex_count;
-    uint32_t *slot = b->slots + p->y / PARTS * r->row + p->x / PARTS;
-    if (!((p->x | p->y) % PARTS)) {
-        if (*slot != UINT32_MAX)
-            return *slot;
-        *slot = g->vertex_count;
+    uint32_t *slot = (p->x | p->y) % PARTS
+                         ? &b->places[p->y * GTX_BLOCK_PLACES + p->x]
+                         : b->slots + p->y / PARTS * r->row + p->x / PARTS;
+    if (*slot == UINT32_MAX) {
+        *slot = g->vertex_count++;
+        ((gtx_grid_vertex *)g->vertices.data)[*slot] = (gtx_grid_vertex){
+            .x = (uint16_t)(PARTS * b->x + p->x), .y = (uint16_t)(PARTS * b->y + p->y),
+            .code = (uint16_t)(p->z / (PARTS * PARTS)), .rest = (uint16_t)(p->z % (PARTS * PARTS)),
+            .patch = r->patch};
     }
-    *to = (gtx_grid_vertex){.x = (uint16_t)(PARTS * b->x + p->x),
-                            .y = (uint16_t)(PARTS * b->y + p->y),
-                            .code = (uint16_t)(p->z / (PARTS * PARTS)),
-                            .rest = (uint16_t)(p->z % (PARTS * PARTS)), .patch = r->patch};
-    return g->vertex_count++;
+    return *slot;
 }
 
 /* Adds a triangle if it is seen. */
-static void add_drawn(const gtx_refining *r, const gtx_refined *b, const gtx_grid_point corner[3],
+static void add_drawn(const gtx_refining *r, gtx_refined *b, const gtx_grid_point corner[3],
                       uint32_t from_front)
 {
     static const uint8_t turned[2][3] = {{0, 1, 2}, {1, 2, 0}};
@@ -316,9 +314,8 @@ static bool reserve(const gtx_refining *r)
 {
     gtx_grids *g = r->grids;
     const uint32_t triangles = GTX_RTIN_LEAF * (r->code > 0 ? GTX_HALF_TRIANGLES : 1);
-    const uint32_t nodes = (GTX_RTIN_CELLS + 1) * (GTX_RTIN_CELLS + 1) +
-                           (r->code > 0 ? 3 * triangles : 0);
-    bool all = gtx_scratch_grow(r->hooks, &g->vertices, g->vertex_count + nodes,
+    const uint32_t places = GTX_BLOCK_PLACES * GTX_BLOCK_PLACES;
+    bool all = gtx_scratch_grow(r->hooks, &g->vertices, g->vertex_count + places,
                                 sizeof(gtx_grid_vertex));
     for (uint32_t k = 0; k < (r->two_sided ? GTX_GRID_LOOKS : GTX_GRID_BEHIND); ++k)
         all = all && gtx_scratch_grow(r->hooks, &g->indices[k],
