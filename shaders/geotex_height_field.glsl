@@ -157,23 +157,29 @@ float gtx_trim_limit(int level)
     return float(GTX_TRIM_OUTLINE) + float(GTX_TRIM_TEXEL) * GTX_TRIM_SHOWN * float(1 << level);
 }
 
-/* Whether the height field shows at a point: it may lie a little outside the outline. */
-bool gtx_shows(gtx_height_field field, vec2 at)
+/* The trim's code at a point of a rectangle, which it is clamped to. */
+float gtx_trim_at(ivec2 corner, ivec2 size, int page, vec2 at)
 {
-    ivec2 cell = clamp(ivec2(floor(at)), ivec2(0), field.size - 2);
+    ivec2 cell = clamp(ivec2(floor(at)), ivec2(0), size - 2);
 #ifdef GTX_GATHER
-    vec4 g = textureGather(gtx_trim, vec3((vec2(field.corner + cell) + 1.0) /
-                                          vec2(textureSize(gtx_trim, 0).xy), float(field.page)));
+    vec4 g = textureGather(gtx_trim, vec3((vec2(corner + cell) + 1.0) /
+                                          vec2(textureSize(gtx_trim, 0).xy), float(page)));
     float a = g.w, b = g.z, c = g.x, d = g.y;
 #else
-    ivec3 texel = ivec3(field.corner + cell, field.page);
+    ivec3 texel = ivec3(corner + cell, page);
     float a = texelFetch(gtx_trim, texel, 0).r;
     float b = texelFetch(gtx_trim, texel + ivec3(1, 0, 0), 0).r;
     float c = texelFetch(gtx_trim, texel + ivec3(0, 1, 0), 0).r;
     float d = texelFetch(gtx_trim, texel + ivec3(1, 1, 0), 0).r;
 #endif
     vec2 f = clamp(at - vec2(cell), 0.0, 1.0);
-    return mix(mix(a, b, f.x), mix(c, d, f.x), f.y) * 255.0 <= gtx_trim_limit(field.level);
+    return mix(mix(a, b, f.x), mix(c, d, f.x), f.y) * 255.0;
+}
+
+/* Whether the height field shows at a point: it may lie a little outside the outline. */
+bool gtx_shows(gtx_height_field field, vec2 at)
+{
+    return gtx_trim_at(field.corner, field.size, field.page, at) <= gtx_trim_limit(field.level);
 }
 
 /* Shortens [t0, t1] to where a + b t >= 0. */

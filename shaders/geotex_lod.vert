@@ -243,7 +243,7 @@ void main()
     gtx_lit.rgb = gtx_shown(root, gtx_light.w + (1.0 - gtx_light.w) * light);
 #endif
 #ifdef GTX_TRIMMED
-    gtx_outline = 255.0 * texelFetch(gtx_trim, ivec3(rect.xy + at, page), 0).r;
+    gtx_outline = gtx_trim_at(ivec2(rect.xy), ivec2(rect.zw), int(page), at);
 #endif
 #else
     gtx_at = place;

@@ -111,7 +111,7 @@ static void gather(const search *s, uint32_t level)
                 if (rise > s->rtin->rise[level])
                     s->rtin->rise[level] = (uint16_t)rise;
             }
-            s->sum[own] = most + surplus(s, side_of(level, half, x, y), x, y);
+            s->sum[own] += most + surplus(s, side_of(level, half, x, y), x, y);
         }
 }
 
@@ -129,9 +129,32 @@ static void find_outline(const gtx_grid *finest, const uint8_t *trim, size_t row
         }
 }
 
+/* Of 2x2 cells only a part of which shows, all triangles are rough: outlines cross halves of cells
+ * alone, others of which need no map, nor those of which all shows the trim. */
+static void start_at_outline(const search *s, const gtx_rtin_node *nodes)
+{
+    const size_t row = gtx_rtin_row(s->rtin);
+    for (size_t y = 0; y < s->rtin->rows * CELLS; y += 2)
+        for (size_t x = 0; x + 1 < row; x += 2) {
+            const size_t middle = (y + 1) * row + x + 1;
+            uint32_t some = 0, whole = GTX_RTIN_SOLID | GTX_RTIN_WITHIN;
+            for (size_t k = 0; k < 9; ++k) {
+                const uint32_t bits = nodes[(y + k / 3) * row + x + k % 3].bits;
+                const bool cell = k / 3 < 2 && k % 3 < 2;
+                some |= cell ? bits : 0;
+                whole &= cell ? bits : bits | GTX_RTIN_SOLID;
+            }
+            if (!(some & GTX_RTIN_SOLID) || whole == (GTX_RTIN_SOLID | GTX_RTIN_WITHIN))
+                continue;
+            s->sum[middle - row] = s->sum[middle - 1] = s->sum[middle] = s->sum[middle + 1] =
+                s->sum[middle + row] = 2 * tolerance;
+        }
+}
+
 static void find_rough(const search *s, size_t count, gtx_rtin_node *nodes)
 {
     memset(s->sum, 0, count * sizeof *s->sum);
+    start_at_outline(s, nodes);
     for (uint32_t level = GTX_RTIN_LEVELS; level-- > 0;)
         gather(s, level);
     for (size_t i = 0; i < count; ++i)

@@ -183,13 +183,14 @@ static void add_drawn(const gtx_refining *r, gtx_refined *b, const gtx_grid_poin
 }
 
 /* A triangle that is not halved. Halves of cells are divided as their surface and those beside it
- * ask for; what is not whole is then cut by maps. */
+ * ask for. */
 static void add_whole(const gtx_refining *r, gtx_refined *b, const gtx_rtin_triangle *t,
                       uint32_t level)
 {
     gtx_grid_point corner[3], divided[GTX_HALF_TRIANGLES][3];
     const gtx_grid_point *from = corner;
-    uint32_t looks = looks_of(r, b, t, level), count = 1;
+    const uint32_t looks = looks_of(r, b, t, level);
+    uint32_t count = 1;
     if (looks == GTX_GRID_LOOKS)
         return;
     for (int c = 0; c < 3; ++c)
@@ -199,8 +200,6 @@ static void add_whole(const gtx_refining *r, gtx_refined *b, const gtx_rtin_tria
     if (level == GTX_RTIN_LEVELS && r->code > 0 && gtx_is_divided(r, b, t->middle)) {
         count = gtx_divide_half(b, t->middle, corner, divided);
         from = divided[0];
-        if (count > 1 && looks & GTX_GRID_TRIMMED)
-            looks |= GTX_GRID_MAPPED;
     }
     for (uint32_t i = 0; i < count; ++i)
         add_drawn(r, b, from + 3 * i, looks);
