@@ -5,8 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Of a cell; and those that a side is cut into. */
-enum { PARTS = GTX_GRID_PARTS, SIDE_PARTS = 2, ROW = GTX_BLOCK_ROW };
+enum { PARTS = GTX_GRID_PARTS, ROW = GTX_BLOCK_ROW };
 
 /* How a cell is drawn: as two halves, which are as far from its surface as its diagonal; as four
  * triangles around its middle, which are a fourth as far from it; or so its four parts, a fourth
@@ -58,90 +57,34 @@ bool gtx_is_divided(const gtx_refining *r, gtx_refined *b, const uint8_t cell[2]
     return *d || (d[-1] | d[1] | d[-ROW] | d[ROW]) & IN_PARTS;
 }
 
-/* Triangles of half a cell so far. */
-typedef struct cut {
-    const gtx_refined *block;
-    uint32_t count;
-    gtx_grid_point (*out)[3];
-} cut;
+/* Triangles by the points of half a cell, of which there are so many, with no side, the one from o
+ * to a, the one from b to o, or both cut by the cell beyond. */
+static const char *const triangles[2][4] = {
+    {"012", "241401", "150520", "150245405"},
+    {"203123", "243403123", "203153523", "243403153523"}};
+static const char in_parts[] = "246436356526407347538158";
 
-static void add(cut *c, gtx_grid_point p, gtx_grid_point q, gtx_grid_point o)
+const char *gtx_divide_half(const gtx_refined *b, const uint8_t cell[2],
+                            gtx_grid_point points[GTX_HALF_POINTS])
 {
-    gtx_grid_point *to = c->out[c->count++];
-    to[0] = p;
-    to[1] = q;
-    to[2] = o;
-}
-
-/* Half way. */
-static gtx_grid_point between(const gtx_refined *b, gtx_grid_point p, gtx_grid_point q)
-{
-    const uint32_t x = (p.x + q.x) / SIDE_PARTS, y = (p.y + q.y) / SIDE_PARTS;
-    const uint32_t i = x % PARTS, j = y % PARTS;
-    const gtx_rtin_node *n = &b->nodes[gtx_block_node(x / PARTS, y / PARTS)];
-    return (gtx_grid_point){x, y, (PARTS - j) * ((PARTS - i) * n[0].code + i * n[1].code) +
-                                      j * ((PARTS - i) * n[ROW].code + i * n[ROW + 1].code)};
-}
-
-/* Triangles from a side, as a whole or from its parts, to a point beyond. */
-static void add_side(cut *c, bool is_cut, gtx_grid_point p, gtx_grid_point q, gtx_grid_point to)
-{
-    const gtx_grid_point middle = is_cut ? between(c->block, p, q) : q;
-    add(c, p, middle, to);
-    if (is_cut)
-        add(c, middle, q, to);
-}
-
-/* A fourth of the cell, and half of two: around the middle of each. */
-static void add_parts(cut *c, const gtx_grid_point corner[3])
-{
-    const gtx_refined *block = c->block;
-    const gtx_grid_point a = corner[0], b = corner[1], o = corner[2], middle = between(block, a, b);
-    const gtx_grid_point beside_a = between(block, o, a), beside_b = between(block, o, b);
-    const gtx_grid_point inner = between(block, o, middle), toward_a = between(block, a, middle);
-    const gtx_grid_point toward_b = between(block, b, middle);
-    add(c, o, beside_a, inner);
-    add(c, beside_a, middle, inner);
-    add(c, middle, beside_b, inner);
-    add(c, beside_b, o, inner);
-    add(c, beside_a, a, toward_a);
-    add(c, middle, beside_a, toward_a);
-    add(c, beside_b, middle, toward_b);
-    add(c, b, beside_b, toward_b);
-}
-
-/* Whether the cell beyond the side from p to q of a cell has points on it. */
-static bool is_cut(const uint8_t *divided, const uint8_t cell[2], gtx_grid_point p,
-                   gtx_grid_point q)
-{
-    const int beyond = p.x == q.x ? p.x == PARTS * cell[0] ? -1 : 1
-                                  : p.y == PARTS * cell[1] ? -ROW : ROW;
-    return divided[beyond] == IN_PARTS;
-}
-
-uint32_t gtx_divide_half(const gtx_refined *block, const uint8_t cell[2],
-                         const gtx_grid_point corner[3],
-                         gtx_grid_point out[GTX_HALF_TRIANGLES][3])
-{
-    const gtx_grid_point a = corner[0], b = corner[1], o = corner[2];
-    const uint8_t *divided = &block->divided[gtx_block_node(cell[0], cell[1])];
-    const bool cut_a = is_cut(divided, cell, o, a), cut_b = is_cut(divided, cell, b, o);
-    cut c = {block, 0, out};
-    if (*divided == IN_PARTS) {
-        add_parts(&c, corner);
-    } else if (*divided == QUARTERS) {
-        const gtx_grid_point middle = between(block, a, b);
-        add_side(&c, cut_a, o, a, middle);
-        add_side(&c, cut_b, b, o, middle);
-    } else if (cut_a) {
-        const gtx_grid_point last = cut_b ? between(block, b, o) : b;
-        if (cut_b)
-            add(&c, b, last, a);
-        add_side(&c, true, o, a, last);
-    } else if (cut_b) {
-        add_side(&c, true, b, o, a);
-    } else {
-        add(&c, a, b, o);
+    /* Which two the points after the corners a, b and o are half way between. */
+    static const char ends[] = "012021230313";
+    const uint8_t *divided = &b->divided[gtx_block_node(cell[0], cell[1])];
+    uint32_t cut = 0;
+    for (uint32_t k = 0; k < 2; ++k) {
+        const gtx_grid_point *p = &points[k], *o = &points[2];
+        const int beyond = p->x == o->x ? p->x == PARTS * cell[0] ? -1 : 1
+                                        : p->y == PARTS * cell[1] ? -ROW : ROW;
+        cut |= (uint32_t)(divided[beyond] == IN_PARTS) << k;
     }
-    return c.count;
+    for (uint32_t k = 3; k < GTX_HALF_POINTS; ++k) {
+        const gtx_grid_point *p = &points[ends[2 * k - 6] - '0'];
+        const gtx_grid_point *q = &points[ends[2 * k - 5] - '0'];
+        const uint32_t x = (p->x + q->x) / 2, y = (p->y + q->y) / 2, i = x % PARTS, j = y % PARTS;
+        const gtx_rtin_node *n = &b->nodes[gtx_block_node(x / PARTS, y / PARTS)];
+        const uint32_t above = (PARTS - i) * n[0].code + i * n[1].code;
+        const uint32_t below = (PARTS - i) * n[ROW].code + i * n[ROW + 1].code;
+        points[k] = (gtx_grid_point){x, y, (PARTS - j) * above + j * below};
+    }
+    return *divided == IN_PARTS ? in_parts : triangles[*divided][cut];
 }

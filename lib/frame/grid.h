@@ -128,12 +128,12 @@ typedef struct gtx_grid_point {
 
 /* divide.c: whether a cell of a block is divided, or sides of it are. */
 bool gtx_is_divided(const gtx_refining *r, gtx_refined *b, const uint8_t cell[2]);
-/* Cuts half of such a cell, its corners as those of a triangle, into triangles that meet those over
- * cells beside it. Returns how many; `out` gets their corners. */
-enum { GTX_HALF_TRIANGLES = 8 };
-uint32_t gtx_divide_half(const gtx_refined *b, const uint8_t cell[2],
-                         const gtx_grid_point corner[3],
-                         gtx_grid_point out[GTX_HALF_TRIANGLES][3]);
+/* Cuts half of such a cell, of which the points begin with the corners, as those of a triangle,
+ * into triangles that meet those over cells beside it. Finds the other points; returns which are
+ * the corners of triangles, as digits. */
+enum { GTX_HALF_POINTS = 9, GTX_HALF_TRIANGLES = 8 };
+const char *gtx_divide_half(const gtx_refined *b, const uint8_t cell[2],
+                            gtx_grid_point points[GTX_HALF_POINTS]);
 
 /* mix.c: takes those patches out of the planner's plan that are drawn so, and those that they hide,
  * and fills its grids with the blocks of theirs that are in view and may face the eye, in the order

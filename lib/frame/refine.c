@@ -132,13 +132,12 @@ static uint32_t looks_of(const gtx_refining *r, const gtx_refined *b, const gtx_
 }
 
 /* Whether the eye is above the plane through corners, counterclockwise seen from above. */
-static bool is_front(const gtx_refining *r, const gtx_refined *b, const gtx_grid_point corner[3])
+static bool is_front(const gtx_refining *r, const gtx_refined *b,
+                     const gtx_grid_point *const corner[3])
 {
-    const gtx_grid_point *p = corner;
-    const int32_t u[3] = {(int32_t)(p[1].x - p->x), (int32_t)(p[1].y - p->y),
-                          (int32_t)(p[1].z - p->z)};
-    const int32_t v[3] = {(int32_t)(p[2].x - p->x), (int32_t)(p[2].y - p->y),
-                          (int32_t)(p[2].z - p->z)};
+    const gtx_grid_point *p = corner[0], *q = corner[1], *o = corner[2];
+    const int32_t u[3] = {(int32_t)(q->x - p->x), (int32_t)(q->y - p->y), (int32_t)(q->z - p->z)};
+    const int32_t v[3] = {(int32_t)(o->x - p->x), (int32_t)(o->y - p->y), (int32_t)(o->z - p->z)};
     /* In grid space; z is in smaller parts than x and y. */
     const double parts = GTX_GRID_PARTS;
     const double x = (int32_t)(GTX_GRID_PARTS * b->x + p->x) / parts;
@@ -168,7 +167,7 @@ static uint32_t vertex_of(const gtx_refining *r, gtx_refined *b, const gtx_grid_
 }
 
 /* Adds a triangle if it is seen. */
-static void add_drawn(const gtx_refining *r, gtx_refined *b, const gtx_grid_point corner[3],
+static void add_drawn(const gtx_refining *r, gtx_refined *b, const gtx_grid_point *const corner[3],
                       uint32_t from_front)
 {
     static const uint8_t turned[2][3] = {{0, 1, 2}, {1, 2, 0}};
@@ -179,7 +178,7 @@ static void add_drawn(const gtx_refining *r, gtx_refined *b, const gtx_grid_poin
     uint32_t *to = (uint32_t *)r->grids->indices[looks].data + r->grids->index_count[looks];
     r->grids->index_count[looks] += 3;
     for (int c = 0; c < 3; ++c)
-        to[turned[r->turn][c]] = vertex_of(r, b, &corner[c]);
+        to[turned[r->turn][c]] = vertex_of(r, b, corner[c]);
 }
 
 /* A triangle that is not halved. Halves of cells are divided as their surface and those beside it
@@ -187,22 +186,22 @@ static void add_drawn(const gtx_refining *r, gtx_refined *b, const gtx_grid_poin
 static void add_whole(const gtx_refining *r, gtx_refined *b, const gtx_rtin_triangle *t,
                       uint32_t level)
 {
-    gtx_grid_point corner[3], divided[GTX_HALF_TRIANGLES][3];
-    const gtx_grid_point *from = corner;
+    gtx_grid_point points[GTX_HALF_POINTS];
     const uint32_t looks = looks_of(r, b, t, level);
-    uint32_t count = 1;
+    const char *corner = "012";
     if (looks == GTX_GRID_LOOKS)
         return;
     for (int c = 0; c < 3; ++c)
-        corner[c] = (gtx_grid_point){
+        points[c] = (gtx_grid_point){
             GTX_GRID_PARTS * t->corner[c][0], GTX_GRID_PARTS * t->corner[c][1],
             GTX_GRID_PARTS * GTX_GRID_PARTS * node_at(b, t->corner[c])->code};
-    if (level == GTX_RTIN_LEVELS && r->code > 0 && gtx_is_divided(r, b, t->middle)) {
-        count = gtx_divide_half(b, t->middle, corner, divided);
-        from = divided[0];
+    if (level == GTX_RTIN_LEVELS && r->code > 0 && gtx_is_divided(r, b, t->middle))
+        corner = gtx_divide_half(b, t->middle, points);
+    for (; *corner; corner += 3) {
+        const gtx_grid_point *const of[3] = {&points[corner[0] - '0'], &points[corner[1] - '0'],
+                                             &points[corner[2] - '0']};
+        add_drawn(r, b, of, looks);
     }
-    for (uint32_t i = 0; i < count; ++i)
-        add_drawn(r, b, from + 3 * i, looks);
 }
 
 /* Whether triangles are to end at a middle. */
@@ -259,14 +258,13 @@ static void limit(const gtx_refining *r, gtx_refined *b, const uint32_t codes[2]
     for (uint32_t level = 0; level < GTX_RTIN_LEVELS; ++level) {
         const double least = low - r->reach[level], most = high - r->reach[level];
         gtx_halved *h = &b->halved[level];
-        *h = (gtx_halved){0, 0, 0, 0};
-        if (level >= r->depth)
-            h->all = h->none = UINT32_MAX;
-        else if (r->by_error)
-            *h = (gtx_halved){1 + whole_of(most * r->per_unit, GTX_RTIN_MAX_ERROR),
-                              1 + whole_of(least * r->per_unit, GTX_RTIN_MAX_ERROR),
-                              most < r->near ? GTX_RTIN_ROUGH : 0,
-                              least < r->near ? GTX_RTIN_ROUGH : 0};
+        *h = (gtx_halved){1 + whole_of(most * r->per_unit, GTX_RTIN_MAX_ERROR),
+                          1 + whole_of(least * r->per_unit, GTX_RTIN_MAX_ERROR),
+                          most < r->near ? GTX_RTIN_ROUGH : 0,
+                          least < r->near ? GTX_RTIN_ROUGH : 0};
+        const uint32_t all = level < r->depth ? 0 : UINT32_MAX;
+        if (!r->by_error)
+            *h = (gtx_halved){all, all, 0, 0};
     }
     /* Corners are no farther from a cell's middle. */
     const double spread = fabs(r->w[2]) * (codes[1] - codes[0]) / 2;
@@ -276,36 +274,26 @@ static void limit(const gtx_refining *r, gtx_refined *b, const uint32_t codes[2]
 /* Copies the nodes, and finds the range of their codes. */
 static void load(const gtx_refining *r, gtx_refined *b, uint32_t codes[2])
 {
-    enum { CELLS = GTX_RTIN_CELLS, SIDE = CELLS + 3, LANES = 2 * (SIDE + 1) };
+    enum { CELLS = GTX_RTIN_CELLS, SIDE = CELLS + 3 };
     const uint32_t last = r->rtin->rows * CELLS;
     const bool right = b->x + CELLS + 1 < r->row;
-    uint16_t low[LANES], high[LANES];
-    memset(low, 0xff, sizeof low);
-    memset(high, 0, sizeof high);
     for (uint32_t j = 0; j < SIDE; ++j) {
         const uint32_t y = b->y + j > 1 ? b->y + j - 1 : 0;
         const gtx_rtin_node *from = &r->nodes[(y < last ? y : last) * r->row + b->x];
         gtx_rtin_node *to = &b->nodes[GTX_BLOCK_ROW * j];
         memcpy(to + 1, from, (CELLS + 1) * sizeof *to);
         to[0] = b->x ? from[-1] : (gtx_rtin_node){from[0].code, 0};
-        to[SIDE - 1] = to[SIDE] = from[right ? CELLS + 1 : CELLS];
+        to[SIDE - 1] = from[right ? CELLS + 1 : CELLS];
         for (uint32_t i = 0; !b->y && !j && i < SIDE; ++i)
             to[i].bits = 0;
     }
-    for (uint32_t j = 0; j < SIDE; ++j) {
-        uint16_t lane[LANES];
-        memcpy(lane, &b->nodes[GTX_BLOCK_ROW * j], sizeof lane);
-        for (int k = 0; k < LANES; ++k) {
-            low[k] = lane[k] < low[k] ? lane[k] : low[k];
-            high[k] = lane[k] > high[k] ? lane[k] : high[k];
+    codes[0] = codes[1] = b->nodes[0].code;
+    for (uint32_t j = 0; j < SIDE; ++j)
+        for (uint32_t i = 0; i < SIDE; ++i) {
+            const uint32_t code = b->nodes[GTX_BLOCK_ROW * j + i].code;
+            codes[0] = code < codes[0] ? code : codes[0];
+            codes[1] = code > codes[1] ? code : codes[1];
         }
-    }
-    codes[0] = low[0];
-    codes[1] = high[0];
-    for (int k = 2; k < LANES; k += 2) {
-        codes[0] = low[k] < codes[0] ? low[k] : codes[0];
-        codes[1] = high[k] > codes[1] ? high[k] : codes[1];
-    }
 }
 
 /* Room for all that a block may add. */
