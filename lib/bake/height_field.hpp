@@ -112,6 +112,13 @@ public:
     /* The height field at a place of a cell with codes. */
     Vec3d point(const CellPoint &place) const;
     Vec3d normal(const CellPoint &place) const;
+    /* From the lowest corner of a cell with codes to its highest. */
+    double rise(size_t cell) const
+    {
+        const auto [low, high] = std::minmax({code(cell), code(cell + 1), code(cell + row_),
+                                              code(cell + row_ + 1)});
+        return (high - low) * step;
+    }
 
 private:
     void decode(const gtx_patch &record, unsigned height_bits);
