@@ -295,7 +295,7 @@ void Task::in_parts(size_t count, size_t parts,
 void Task::at_once(std::initializer_list<std::function<void()>> steps)
 {
     const unsigned outer = Limits::lane;
-    const auto body = [&](size_t which) {
+    const std::function<void(size_t)> body = [&](size_t which) {
         struct Lane {
             unsigned before = Limits::lane;
             ~Lane() { Limits::lane = before; }
