@@ -12,19 +12,14 @@ enum { PARTS = GTX_GRID_PARTS, ROW = GTX_BLOCK_ROW };
  * as far again. */
 enum { HALVES = 0, QUARTERS = 1, IN_PARTS = 2 };
 
-static double greater(double a, double b)
-{
-    return a > b ? a : b;
-}
-
 static uint8_t division_of(const gtx_refining *r, const gtx_refined *block, uint32_t at)
 {
     const gtx_rtin_node *n = &block->nodes[at];
     const uint32_t a = n[0].code, b = n[1].code, c = n[ROW].code, d = n[ROW + 1].code;
     const double x = block->x + at % ROW - 0.5, y = block->y + at / ROW - 0.5;
     const double middle = 0.25 * (a + b + c + d);
-    const double spread = greater(greater(fabs(a - middle), fabs(b - middle)),
-                                  greater(fabs(c - middle), fabs(d - middle)));
+    const double spread = gtx_grid_greater(gtx_grid_greater(fabs(a - middle), fabs(b - middle)),
+                                           gtx_grid_greater(fabs(c - middle), fabs(d - middle)));
     const double w = r->w[0] * x + r->w[1] * y + r->w[2] * middle + r->w[3] - r->reach_of_cell -
                      fabs(r->w[2]) * spread;
     const double error = 0.25 * gtx_rtin_twist(n, ROW) * r->code;

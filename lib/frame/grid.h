@@ -25,6 +25,12 @@ static inline void gtx_grid_place(const gtx_grid_vertex *v, double out[3])
     out[2] = v->code + v->rest / (parts * parts);
 }
 
+/* fmax is a call. */
+static inline double gtx_grid_greater(double a, double b)
+{
+    return a > b ? a : b;
+}
+
 /* Drawn alike: first those seen from the front, then those from behind; of either those that show
  * whole, which leave the depth test first, then others; of these first those that may be lit at
  * their vertices, then those whose pixels look maps up. */

@@ -16,12 +16,6 @@ static const double near_texel_shaded = 4;
 /* All bytes of a slot without a vertex. */
 enum { NO_VERTEX = 0xff };
 
-/* fmax is a call. */
-static double greater(double a, double b)
-{
-    return a > b ? a : b;
-}
-
 /* The side of a texel, of a square of the same area. */
 static double texel_of(gtx_record record)
 {
@@ -58,11 +52,11 @@ gtx_refining gtx_refine(const gtx_frustum *f, const gtx_model *model, uint32_t p
         r.depth -= 2 * (uint32_t)(f->level < 3 ? f->level : 3);
     /* A middle's triangles reach as far as its halves' middles; those of the finest level a
      * cell. */
-    double reach = greater(fabs(w[0]), fabs(w[1]));
+    double reach = gtx_grid_greater(fabs(w[0]), fabs(w[1]));
     r.reach_of_cell = (fabs(w[0]) + fabs(w[1])) / 2;
     const double rise = rtin->rise[GTX_RTIN_LEVELS - 1];
     if (rtin->twist > 0)
-        reach = greater(reach, 2 * (r.reach_of_cell + fabs(w[2]) * rise));
+        reach = gtx_grid_greater(reach, 2 * (r.reach_of_cell + fabs(w[2]) * rise));
     /* Where a patch is so far away that no cell is to be divided, none is looked at. */
     const double code = f->scale * (double)rtin->code;
     const double least = gtx_plane_at(&f->w, sphere) - f->w.slope * (double)sphere[3];
@@ -74,7 +68,8 @@ gtx_refining gtx_refine(const gtx_frustum *f, const gtx_model *model, uint32_t p
         const double away = GTX_RTIN_CELLS >> (level / 2 + 1);
         const double x = fabs(w[0]) * away, y = fabs(w[1]) * away;
         if (level + 1 < GTX_RTIN_LEVELS)
-            reach += (level & 1 ? (x + y) / 2 : greater(x, y)) + fabs(w[2]) * rtin->rise[level];
+            reach += (level & 1 ? (x + y) / 2 : gtx_grid_greater(x, y)) +
+                     fabs(w[2]) * rtin->rise[level];
         r.reach[level] = reach;
     }
     memset(grids->slots.data, NO_VERTEX, r.row * ((size_t)rtin->rows * GTX_RTIN_CELLS + 1) *
@@ -94,8 +89,8 @@ static bool is_all_front(const double e[4], const gtx_slab *s)
         const double more = 0.5 * ((double)rise[1 - k][1] - rise[1 - k][0]);
         const double low = rise[k][0] - more, high = rise[k][1] + more;
         const double from = e[k] - e[3] * s->high[k], to = e[k] - e[3] * s->low[k];
-        above -= s->slope[k] * e[k] + greater(greater(low * from, low * to),
-                                              greater(high * from, high * to));
+        above -= s->slope[k] * e[k] + gtx_grid_greater(gtx_grid_greater(low * from, low * to),
+                                                       gtx_grid_greater(high * from, high * to));
     }
     return above >= 0;
 }

@@ -36,7 +36,6 @@ public:
         c_ = cross(normal, b) / square;
     }
     bool is_flat() const { return is_flat_; }
-    const Vec3d &up() const { return up_; }
     Over place(const Vec3d &point) const
     {
         const Vec3d from = point - origin_;
