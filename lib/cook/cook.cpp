@@ -165,7 +165,7 @@ static std::unique_ptr<Report> report_on(const gtx_asset *asset, const Options &
 }
 
 /* The whole line. Without an output the asset is only returned. */
-static Asset cook(const ModelInput &input, const char *output, const gtx_cook_desc &desc,
+static Cooked cook(const ModelInput &input, const char *output, const gtx_cook_desc &desc,
                   gtx_report *report)
 {
     const Options options = checked_options(desc);
@@ -176,7 +176,7 @@ static Asset cook(const ModelInput &input, const char *output, const gtx_cook_de
 
     const Outputs outputs = {output, desc.charts_ply, desc.sources_fn, desc.sources_user};
     outputs.refuse_one_file();
-    if (!input.data && !input.mesh)
+    if (!input.data && !input.make)
         outputs.refuse(input.path);
     for (uint32_t i = 0; i < desc.more_count; ++i)
         outputs.refuse(desc.more[i]);
@@ -229,15 +229,18 @@ static Asset cook(const ModelInput &input, const char *output, const gtx_cook_de
         require_ok(gtx_write_file(output, found.file->data, found.file->size, &error), error);
     if (report)
         made->hand_over(report);
-    return std::move(cooked.asset);
+    return cooked;
 }
 
-gtx_result cook_made_mesh(Mesh mesh, uint64_t hash, const gtx_cook_desc &desc, gtx_asset **out,
+gtx_result cook_made_mesh(const std::function<Mesh()> &make, uint64_t hash,
+                          const gtx_cook_desc &desc, gtx_asset **out, std::string *file,
                           gtx_report *report, gtx_error *error)
 {
     return guard(error, [&] {
-        const ModelInput input = {"mesh", nullptr, bytes_of(mesh), &mesh, hash};
-        *out = cook(input, nullptr, desc, report).release();
+        const ModelInput input = {"mesh", nullptr, 0, make, hash};
+        Cooked cooked = cook(input, nullptr, desc, report);
+        *file = cooked.file->view();
+        *out = cooked.asset.release();
     });
 }
 
@@ -260,6 +263,6 @@ gtx_result gtx_cook_memory(const void *data, size_t size, const char *name,
         gtx::require_argument(data && name && out,
                               "gtx_cook_memory needs bytes, a name and a result");
         *out = gtx::cook({name, data, size}, nullptr, desc ? *desc : gtx_cook_desc{}, report)
-                   .release();
+                   .asset.release();
     });
 }

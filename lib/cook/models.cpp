@@ -72,11 +72,11 @@ static auto naming(const std::string &path, bool several, Task &task, Body body)
 Models read_models(const ModelInput &first, const char *const *more, uint32_t more_count,
                    const TextureFiles &textures, Task &task)
 {
-    if (first.mesh) {
+    if (first.make) {
         Models made;
-        made.made = std::move(*first.mesh);
+        made.made = first.make();
         made.hash = first.hash;
-        task.limits.read(first.path, first.size);
+        task.limits.read(first.path, bytes_of(made.made));
         return made;
     }
     Vector<ModelInput> inputs = {first};

@@ -5,6 +5,8 @@
 
 #include <geotex/cook.h>
 
+#include <functional>
+
 namespace gtx {
 
 /* A model file, or the bytes of one. */
@@ -12,7 +14,7 @@ struct ModelInput {
     const char *path;
     const void *data = nullptr; /* null: the file is read */
     size_t size = 0;
-    Mesh *mesh = nullptr;       /* or a mesh, which is taken, of this hash */
+    std::function<Mesh()> make = nullptr; /* or what makes a mesh, of this hash */
     uint64_t hash = 0;
 };
 
@@ -41,8 +43,10 @@ Mesh import_models(Models &models, bool z_up, Task &task);
  * as a compressed image takes. */
 size_t bytes_of(const Mesh &mesh);
 
-/* As gtx_cook_memory, of a mesh as importers make one. `hash` stands for its content. */
-gtx_result cook_made_mesh(Mesh mesh, uint64_t hash, const gtx_cook_desc &desc, gtx_asset **out,
+/* As gtx_cook_memory, of a mesh as importers make one: `make` is called once, and the cook counts
+ * its memory. `hash` stands for its content; `file` gets the bytes of the asset. */
+gtx_result cook_made_mesh(const std::function<Mesh()> &make, uint64_t hash,
+                          const gtx_cook_desc &desc, gtx_asset **out, std::string *file,
                           gtx_report *report, gtx_error *error);
 
 } // namespace gtx

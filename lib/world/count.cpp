@@ -60,12 +60,17 @@ CellCounts::CellCounts() : slots_(SLOTS), exponent_(FINEST) {}
 
 void CellCounts::insert(uint64_t cell, uint64_t count)
 {
+    if (slots_[last_].cell == cell) { /* most follow one of the same cell: nothing to look for */
+        slots_[last_].count += count;
+        return;
+    }
     size_t at = size_t(cell * 0x9e3779b97f4a7c15u >> (64 - BITS));
     while (slots_[at].cell != cell && slots_[at].cell != UINT64_MAX)
         at = (at + 1) % SLOTS;
     used_ += slots_[at].cell == UINT64_MAX;
     slots_[at].cell = cell;
     slots_[at].count += count;
+    last_ = at;
 }
 
 void CellCounts::coarsen(int by)

@@ -9,9 +9,7 @@ namespace gtx {
 
 Mesh textured_mesh(const Plan &plan, const TileSurface &s, Task &task)
 {
-    Mesh mesh;
-    mesh.positions = s.positions;
-    mesh.triangles = s.triangles;
+    Mesh mesh = mesh_of(s);
     Appearance &look = mesh.appearance = read_appearance(plan, s, task);
     const uint32_t plain = uint32_t(look.materials.size() - 1);
     bool bent = false, set[2] = {false, false};
@@ -32,10 +30,6 @@ Mesh textured_mesh(const Plan &plan, const TileSurface &s, Task &task)
             if (bent)
                 look.tangents.push_back({corner.tangent[0], corner.tangent[1], corner.tangent[2],
                                          corner.tangent[3]});
-            if (s.traits.normals)
-                mesh.normals.push_back(s.normals[v]);
-            if (s.traits.colors)
-                mesh.colors.push_back(s.colors[v]);
         }
     }
     return mesh;

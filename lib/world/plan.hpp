@@ -110,7 +110,7 @@ private:
     void fit(const Vec3d &p);
 
     Vector<Slot> slots_;
-    size_t used_ = 0;
+    size_t used_ = 0, last_ = 0;     /* slots with a cell; the one that was counted last */
     int exponent_;
 };
 

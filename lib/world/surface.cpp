@@ -2,8 +2,6 @@
  * neighbours. */
 #include "world/surface.hpp"
 
-#include "base/bytes.h"
-
 #include <algorithm>
 #include <cstring>
 
@@ -206,41 +204,19 @@ TileSurface load_surface(const Plan &plan, const Tile &tile, Task &task)
     return out;
 }
 
-/* ---- PLY ---- */
-
-std::string ply_of(const TileSurface &s)
+Mesh mesh_of(const TileSurface &s)
 {
-    const bool normals = s.traits.normals, colors = s.traits.colors;
-    std::string out = "ply\nformat binary_little_endian 1.0\nelement vertex " +
-                      std::to_string(s.positions.size()) +
-                      "\nproperty double x\nproperty double y\nproperty double z\n";
-    if (normals)
-        out += "property float nx\nproperty float ny\nproperty float nz\n";
-    if (colors)
-        out += "property uchar red\nproperty uchar green\nproperty uchar blue\n"
-               "property uchar alpha\n";
-    out += "element face " + std::to_string(s.triangles.size()) +
-           "\nproperty list uchar uint vertex_indices\nend_header\n";
-    const CornerTraits row = {true, normals, colors};
-    const size_t header = out.size(), vertex = row.bytes();
-    out.resize(header + s.positions.size() * vertex + s.triangles.size() * 13);
-    auto *to = reinterpret_cast<uint8_t *>(&out[header]);
-    for (size_t v = 0; v < s.positions.size(); ++v) {
-        for (int k = 0; k < 3; ++k, to += 8)
-            gtx_store_f64(to, s.positions[v][k]);
-        for (int k = 0; k < 3 && normals; ++k, to += 4)
-            gtx_store_f32(to, s.normals[v][k]);
-        std::memcpy(to, &s.colors[v], colors ? 4 : 0);
-        to += colors ? 4 : 0;
-    }
-    for (const auto &t : s.triangles) {
-        *to++ = 3;
+    Mesh mesh;
+    mesh.positions = s.positions;
+    mesh.triangles = s.triangles;
+    for (const auto &t : s.triangles)
         for (uint32_t v : t) {
-            gtx_store_u32(to, v);
-            to += 4;
+            if (s.traits.normals)
+                mesh.normals.push_back(s.normals[v]);
+            if (s.traits.colors)
+                mesh.colors.push_back(s.colors[v]);
         }
-    }
-    return out;
+    return mesh;
 }
 
 } // namespace gtx

@@ -33,8 +33,8 @@ TileSurface load_surface(const Plan &plan, const Tile &tile, Task &task);
 /* Loads one cell file, without a ring. */
 TileSurface load_cell(const std::string &path);
 
-/* The surface as a binary PLY file for the cooker; without textures. */
-std::string ply_of(const TileSurface &surface);
+/* The surface as the cooker takes it, without textures. */
+Mesh mesh_of(const TileSurface &surface);
 
 /* The traits of simplified surfaces: textures have become colours. */
 inline CornerTraits low_traits(const CornerTraits &of)

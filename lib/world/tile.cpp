@@ -26,20 +26,25 @@ struct TileCook {
     TileFacts facts;
     Mesh textured;                   /* what is cooked where the surface has textures */
 
-    uint64_t key_of(const std::string &ply, const TileSurface &surface, size_t wanted) const;
-    AssetOwner cook(const std::string &ply);
-    std::string encoded(const gtx_asset *asset) const;
-    void cook_all(const std::string &ply, const TileSurface &surface, NearSurface &near);
+    uint64_t key_of(const TileSurface &surface, size_t wanted) const;
+    AssetOwner cook(const TileSurface &surface, std::string &bytes);
+    void cook_all(const TileSurface &surface, NearSurface &near);
     void make_low(const TileSurface &surface, NearSurface &near, size_t wanted);
 };
 
 } // namespace
 
+template <class T> static uint64_t hash_of(const Vector<T> &items)
+{
+    return gtx_hash_bytes(items.data(), items.size() * sizeof(T));
+}
+
 /* Of the surface, of the tile's share of it, and of all options. */
-uint64_t TileCook::key_of(const std::string &ply, const TileSurface &surface, size_t wanted) const
+uint64_t TileCook::key_of(const TileSurface &surface, size_t wanted) const
 {
     const uint64_t numbers[] = {
-        content_key(checked_options(desc), gtx_hash_bytes(ply.data(), ply.size())),
+        content_key(checked_options(desc), hash_of(surface.positions)),
+        hash_of(surface.triangles), hash_of(surface.normals), hash_of(surface.colors),
         surface.header.hash, surface.own, wanted, plan.glb};
     gtx_hash hash;
     gtx_hash_begin(&hash);
@@ -53,17 +58,18 @@ uint64_t TileCook::key_of(const std::string &ply, const TileSurface &surface, si
 }
 
 /* Null where no triangle has an area. */
-AssetOwner TileCook::cook(const std::string &ply)
+AssetOwner TileCook::cook(const TileSurface &surface, std::string &bytes)
 {
     gtx_asset *asset = nullptr;
     gtx_report report = {};
     const std::unique_ptr<gtx_report, void (*)(gtx_report *)> report_owner(&report,
                                                                            gtx_report_free);
     gtx_error error;
+    const auto make = [&] {
+        return surface.traits.textured ? std::move(textured) : mesh_of(surface);
+    };
     const gtx_result result =
-        textured.triangles.empty()
-            ? gtx_cook_memory(ply.data(), ply.size(), "tile.ply", &desc, &asset, &report, &error)
-            : cook_made_mesh(std::move(textured), facts.key, desc, &asset, &report, &error);
+        cook_made_mesh(make, facts.key, desc, &asset, &bytes, &report, &error);
     AssetOwner owner(asset, gtx_close);
     if (result == GTX_ERROR_EMPTY)
         return owner;
@@ -76,17 +82,6 @@ AssetOwner TileCook::cook(const std::string &ply)
                 task.warn(kind, report.warnings[i]);
     }
     return owner;
-}
-
-std::string TileCook::encoded(const gtx_asset *asset) const
-{
-    const gtx_encode_desc encode = {};
-    void *data = nullptr;
-    size_t size = 0;
-    gtx_error error;
-    require_ok(gtx_encode(asset, &encode, &data, &size, &error), error);
-    std::unique_ptr<void, void (*)(void *)> owner(data, std::free);
-    return std::string(static_cast<const char *>(data), size);
 }
 
 /* The finest LOD mesh, where the asset has any. */
@@ -111,9 +106,10 @@ static PlainMesh finest_mesh(const gtx_asset *asset)
     return out;
 }
 
-void TileCook::cook_all(const std::string &ply, const TileSurface &surface, NearSurface &near)
+void TileCook::cook_all(const TileSurface &surface, NearSurface &near)
 {
-    const AssetOwner asset = cook(ply);
+    std::string bytes;
+    const AssetOwner asset = cook(surface, bytes);
     facts.empty = !asset;
     facts.triangles = surface.own;
     if (!asset) {
@@ -126,18 +122,17 @@ void TileCook::cook_all(const std::string &ply, const TileSurface &surface, Near
     for (const float *corner : {info.bounds_min, info.bounds_max})
         facts.add({info.anchor[0] + double(corner[0]), info.anchor[1] + double(corner[1]),
                    info.anchor[2] + double(corner[2])});
-    const PlainMesh mesh = finest_mesh(asset.get());
-    for (const Vec3d &p : mesh.positions)
+    const PlainMesh finest = finest_mesh(asset.get());
+    for (const Vec3d &p : finest.positions)
         facts.add(p);
-    facts.lod_triangles = mesh.triangles.size();
-    facts.error = surface.header.deviation + near.distance_to(mesh, true);
-    const std::string bytes = encoded(asset.get());
+    facts.lod_triangles = finest.triangles.size();
+    facts.error = surface.header.deviation + near.distance_to(finest, true);
     facts.asset = made_of(bytes);
     facts.memory = memory_to_open(bytes);
     facts.beginning = beginning_of(bytes, facts.error, surface.header.deviation);
     write_whole(asset_path(plan, tile), bytes);
     if (plan.glb) {
-        const std::string glb = glb_of(mesh, near, plan.closed);
+        const std::string glb = glb_of(finest, near, plan.closed);
         facts.glb = made_of(glb);
         write_whole(glb_path(plan, tile), glb);
     }
@@ -179,9 +174,8 @@ StepReport cook_tile(const std::string &folder, const std::string &name, Task &t
     const Vector<double> ring = ring_of(surface);
     job.desc.kept = ring.data();
     job.desc.kept_count = ring.size() / 3;
-    const std::string ply = ply_of(surface);
     const size_t wanted = tile.depth ? size_t(plan.low_share(tile) * double(surface.own)) : 0;
-    const uint64_t key = job.key_of(ply, surface, wanted);
+    const uint64_t key = job.key_of(surface, wanted);
     try {
         job.facts = read_facts(plan, tile);
     } catch (const Error &) {
@@ -200,7 +194,7 @@ StepReport cook_tile(const std::string &folder, const std::string &name, Task &t
     }
     NearSurface near(surface, task);
     task.begin("cook");
-    job.cook_all(ply, surface, near);
+    job.cook_all(surface, near);
     task.begin("simplify");
     if (tile.depth)
         job.make_low(surface, near, wanted);

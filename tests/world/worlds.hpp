@@ -2,11 +2,13 @@
 #pragma once
 
 #include "bake/shapes.hpp"
+#include "base/bytes.h"
 #include "common/folder.hpp"
 #include "world/facts.hpp"
 #include "world/surface.hpp"
 
 #include <cstdio>
+#include <cstring>
 #include <fstream>
 #include <string>
 
@@ -58,7 +60,42 @@ inline gtx::Mesh ball(unsigned n)
     });
 }
 
-/* As binary PLY. */
+/* As binary PLY, without textures. */
+inline std::string ply_of(const gtx::TileSurface &s)
+{
+    const bool normals = s.traits.normals, colors = s.traits.colors;
+    std::string out = "ply\nformat binary_little_endian 1.0\nelement vertex " +
+                      std::to_string(s.positions.size()) +
+                      "\nproperty double x\nproperty double y\nproperty double z\n";
+    if (normals)
+        out += "property float nx\nproperty float ny\nproperty float nz\n";
+    if (colors)
+        out += "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+               "property uchar alpha\n";
+    out += "element face " + std::to_string(s.triangles.size()) +
+           "\nproperty list uchar uint vertex_indices\nend_header\n";
+    const gtx::CornerTraits row = {true, normals, colors};
+    const size_t header = out.size(), vertex = row.bytes();
+    out.resize(header + s.positions.size() * vertex + s.triangles.size() * 13);
+    auto *to = reinterpret_cast<uint8_t *>(&out[header]);
+    for (size_t v = 0; v < s.positions.size(); ++v) {
+        for (int k = 0; k < 3; ++k, to += 8)
+            gtx_store_f64(to, s.positions[v][k]);
+        for (int k = 0; k < 3 && normals; ++k, to += 4)
+            gtx_store_f32(to, s.normals[v][k]);
+        std::memcpy(to, &s.colors[v], colors ? 4 : 0);
+        to += colors ? 4 : 0;
+    }
+    for (const auto &t : s.triangles) {
+        *to++ = 3;
+        for (uint32_t v : t) {
+            gtx_store_u32(to, v);
+            to += 4;
+        }
+    }
+    return out;
+}
+
 inline std::string ply_text(const gtx::Mesh &mesh)
 {
     gtx::TileSurface surface;
@@ -66,7 +103,7 @@ inline std::string ply_text(const gtx::Mesh &mesh)
     surface.normals.resize(mesh.positions.size());
     surface.colors.resize(mesh.positions.size());
     surface.triangles = mesh.triangles;
-    return gtx::ply_of(surface);
+    return ply_of(surface);
 }
 
 inline void write_file(const std::string &path, const std::string &text)
