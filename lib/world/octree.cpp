@@ -2,6 +2,7 @@
 #include "world/plan.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <deque>
 
 namespace gtx {
@@ -145,6 +146,71 @@ Vector<Tile> make_tiles(Vector<CountedCell> cells, uint64_t most)
                                        double(plan.tiles[child].triangles));
     }
     return std::move(plan.tiles);
+}
+
+/* ---- boxes ---- */
+
+static uint64_t gathered(uint64_t x)
+{
+    uint64_t out = 0;
+    for (int bit = 0; bit < 21; ++bit)
+        out |= (x >> 3 * bit & 1) << bit;
+    return out;
+}
+
+static void add_box(Tile &to, const Vec3d &low, const Vec3d &high)
+{
+    for (int k = 0; k < 3; ++k) {
+        to.low[k] = std::min(to.low[k], low[k]);
+        to.high[k] = std::max(to.high[k], high[k]);
+    }
+}
+
+/* A cell more on either side is for what rounding may have done. */
+void make_boxes(const Lattice &lattice, const Vector<CountedCell> &cells, double reach,
+                Vector<Tile> &tiles)
+{
+    const double side = std::ldexp(1, lattice.exponent);
+    Vector<std::pair<uint64_t, size_t>> leaves;
+    for (size_t n = 0; n < tiles.size(); ++n)
+        if (tiles[n].is_leaf())
+            leaves.push_back({tiles[n].first, n});
+    std::sort(leaves.begin(), leaves.end());
+    size_t at = 0;
+    for (const CountedCell &cell : cells) {
+        while (at + 1 < leaves.size() && leaves[at + 1].first <= cell.place)
+            ++at;
+        Vec3d low, high;
+        for (int k = 0; k < 3; ++k) {
+            const double first = double(lattice.low[k] + int64_t(gathered(cell.place >> k)));
+            low[k] = (first - 1) * side - reach;
+            high[k] = (first + 2) * side + reach;
+        }
+        add_box(tiles[leaves[at].second], low, high);
+    }
+    for (size_t n = tiles.size(); n-- > 1;)
+        add_box(tiles[tiles[n].parent], tiles[n].low, tiles[n].high);
+}
+
+bool Tile::touches(const Vec3d &from, const Vec3d &to) const
+{
+    bool touch = true;
+    for (int k = 0; k < 3; ++k)
+        touch = touch && low[k] <= to[k] && from[k] <= high[k];
+    return touch;
+}
+
+Vector<const Tile *> Plan::low_neighbours(const Tile &tile) const
+{
+    Vector<const Tile *> out;
+    for (const Tile &other : tiles) {
+        const bool is_child = other.depth > 0 && &tiles[other.parent] == &tile;
+        const bool is_low = other.depth == tile.depth + 1 ||
+                            (other.is_leaf() && other.depth <= tile.depth);
+        if (is_low && !is_child && other.touches(tile.low, tile.high))
+            out.push_back(&other);
+    }
+    return out;
 }
 
 } // namespace gtx

@@ -5,6 +5,7 @@
 
 #include "base/output.h"
 
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -70,8 +71,13 @@ static void count(Plan &plan, Sides sides, Task &task)
     gtx_hash_begin(&hash);
     const size_t bytes = 3 * plan.traits.bytes();
     Vector<uint8_t> block(bytes);
+    double reach = 0;
     plan.dropped = read_inputs(plan, task, [&](const Corners3 &c) {
-        cells.add((c[0].position + c[1].position + c[2].position) / 3);
+        const Vec3d middle = (c[0].position + c[1].position + c[2].position) / 3;
+        cells.add(middle);
+        for (const Corner &corner : c)
+            for (int k = 0; k < 3; ++k)
+                reach = std::max(reach, std::fabs(corner.position[k] - middle[k]));
         boundary.add(c);
         encode_triangle(plan.traits, c, block.data());
         gtx_hash_add(&hash, block.data(), bytes);
@@ -82,6 +88,7 @@ static void count(Plan &plan, Sides sides, Task &task)
     plan.closed = sides == Sides::AUTO ? boundary.closed() : sides == Sides::FRONT;
     const Vector<CountedCell> counted = cells.finish(plan.lattice);
     plan.tiles = make_tiles(counted, plan.triangles);
+    make_boxes(plan.lattice, counted, reach, plan.tiles);
     plan.key = key_of(plan, gtx_hash_end(&hash));
 }
 

@@ -26,8 +26,11 @@ struct Tile {
     Vector<uint32_t> children;
     uint64_t first = 0, end = 0;     /* places of the lattice */
     uint64_t triangles = 0;          /* of a leaf; of other tiles, the expected number */
+    /* Around all of its triangles, at most some cells too large. */
+    Vec3d low{INFINITY, INFINITY, INFINITY}, high{-INFINITY, -INFINITY, -INFINITY};
 
     bool is_leaf() const { return children.empty(); }
+    bool touches(const Vec3d &from, const Vec3d &to) const;
 };
 
 /* A file that triangles come from. */
@@ -50,6 +53,9 @@ struct Plan {
     Vector<Tile> tiles;
 
     const Tile &tile(const std::string &name) const;
+    /* Tiles that may have triangles at the border of one that is no leaf: those whose simplified
+     * surfaces, at its children's level or leaves above it, may touch it. */
+    Vector<const Tile *> low_neighbours(const Tile &tile) const;
     uint32_t depths() const { return tiles.back().depth + 1; }
     /* The share of a tile's triangles that its simplified surface has. */
     double low_share(const Tile &tile) const;
@@ -92,6 +98,10 @@ struct CountedCell {
     uint64_t place, count;
 };
 Vector<Tile> make_tiles(Vector<CountedCell> cells, uint64_t most);
+
+/* Gives tiles their boxes: cells, and as far around as corners are from a triangle's middle. */
+void make_boxes(const Lattice &lattice, const Vector<CountedCell> &cells, double reach,
+                Vector<Tile> &tiles);
 
 /* Counts triangles by place, in a bounded number of cells that are as small as possible. */
 class CellCounts {

@@ -88,6 +88,11 @@ static void write_tile(Json &out, const Tile &tile)
     gtx_json_hash(&out, "end", tile.end);
     gtx_json_integer(&out, "triangles", tile.triangles);
     gtx_json_bool(&out, "leaf", tile.is_leaf());
+    gtx_json_begin_array(&out, "box");
+    for (const Vec3d &corner : {tile.low, tile.high})
+        for (int k = 0; k < 3; ++k)
+            gtx_json_exact(&out, nullptr, corner[k]);
+    gtx_json_end_array(&out);
     gtx_json_end_object(&out);
 }
 
@@ -174,6 +179,10 @@ static Tile read_tile(const json &from, Plan &plan)
     tile.first = hash_of(from.at("first"));
     tile.end = hash_of(from.at("end"));
     tile.triangles = whole_number(from, "triangles", UINT64_MAX);
+    for (size_t k = 0; k < 3; ++k) {
+        tile.low[int(k)] = from.at("box").at(k);
+        tile.high[int(k)] = from.at("box").at(k + 3);
+    }
     require_plan(is_name(tile.name) && tile.name.size() > tile.depth && tile.triangles > 0);
     require_plan(number ? tile.parent < number : tile.parent == 0 && tile.depth == 0);
     if (number) {

@@ -163,7 +163,7 @@ static void find_normals(const Plan &plan, const Tile &tile, size_t own_vertices
             areas[s.place[v]] += area;
     }
     for (const Tile &other : plan.tiles)
-        if (&other != &tile && other.is_leaf())
+        if (&other != &tile && other.is_leaf() && other.touches(bounds.low, bounds.high))
             add_beyond(cell_path(plan, other), own_vertices, bounds, welder, areas);
     for (size_t v = 0; v < areas.size(); ++v)
         s.normals[v] = Vec3f(normalize(areas[s.place[v]]));
@@ -187,17 +187,14 @@ TileSurface load_surface(const Plan &plan, const Tile &tile, Task &task)
     CellHeader box;
     for (const Vec3d &p : out.positions)
         box.add(p);
-    for (size_t n = 0; n < plan.tiles.size(); ++n) {
-        const Tile &other = plan.tiles[n];
-        task.advance(double(n) / double(plan.tiles.size()));
-        const bool is_child = !tile.is_leaf() && &plan.tiles[other.parent] == &tile && n > 0;
-        if (&other == &tile || is_child)
-            continue;
-        if (tile.is_leaf() && other.is_leaf())
+    if (!tile.is_leaf())
+        for (const Tile *other : plan.low_neighbours(tile))
+            add_ring(low_path(plan, *other), own, box, welder, out);
+    for (const Tile &other : plan.tiles) {
+        task.advance(double(&other - &plan.tiles[0]) / double(plan.tiles.size()));
+        if (tile.is_leaf() && other.is_leaf() && &other != &tile &&
+            other.touches(box.low, box.high))
             add_ring(cell_path(plan, other), own, box, welder, out);
-        if (!tile.is_leaf() && (other.depth == tile.depth + 1 ||
-                                (other.is_leaf() && other.depth <= tile.depth)))
-            add_ring(low_path(plan, other), own, box, welder, out);
     }
     if (!out.traits.normals)
         find_normals(plan, tile, own, welder, out);
