@@ -48,6 +48,7 @@ static const verb compare_verb = {
     "Measures an asset against the models it was cooked from, on the CPU. format/measures.md,\n"
     "installed as share/doc/geotex/measures.md, defines every figure. An asset that names its\n"
     "source is not compared with any other model (exit 3), unless --any-model is given.\n"
+    "MODEL may be a height grid, as for horizons and world plan.\n"
     "ASSET may be a world, DIR of gtx world: its tiles are measured together, seams between them\n"
     "included. They and the models, in whole, are in memory at once.",
     2, MAX_FILES, options, MODEL_LIMITS};

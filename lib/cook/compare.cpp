@@ -127,8 +127,8 @@ CompareTask::CompareTask(const gtx_compare_desc &desc)
 
 Models read_compared(const char *model, const gtx_compare_desc &desc, Task &task)
 {
-    return read_models({model}, desc.more, desc.more_count,
-                       {text_of(desc.texture_dir), text_of(desc.base_color)}, task);
+    return read_sources(model, desc.more, desc.more_count,
+                        {text_of(desc.texture_dir), text_of(desc.base_color)}, task);
 }
 
 void compare_models(const ShownAt &shown, uint32_t levels, Models &models,

@@ -2,6 +2,7 @@
 #include "cook/models.hpp"
 
 #include "base/hash.h"
+#include "grid/grid.hpp"
 
 #include <cerrno>
 #include <cstdio>
@@ -11,6 +12,61 @@
 #include <set>
 
 namespace gtx {
+
+/* ---- one mesh ---- */
+
+/* Appends attributes that either mesh may lack: `fill` stands for what is not there. */
+template <class T>
+static void append(Vector<T> &to, size_t before, Vector<T> &from, size_t count,
+                   const T &fill = T())
+{
+    if (to.empty() && from.empty())
+        return;
+    to.resize(before, fill);
+    to.insert(to.end(), from.begin(), from.end());
+    to.resize(before + count, fill);
+}
+
+/* `before` and `count` are triangles. */
+static void append(Appearance &to, size_t before, Appearance &&from, size_t count)
+{
+    bool has_materials = !to.material.empty() || !from.material.empty();
+    for (Appearance *a : {&to, &from})
+        if (has_materials && a->material.empty()) {
+            a->material.assign(a == &to ? before : count, uint32_t(a->materials.size()));
+            a->materials.emplace_back();
+        }
+    uint32_t images = uint32_t(to.images.size()), materials = uint32_t(to.materials.size());
+    for (Material &m : from.materials) {
+        for (Texture Material::*map : MATERIAL_TEXTURES)
+            if ((m.*map).used())
+                (m.*map).image += images;
+        to.materials.push_back(m);
+    }
+    for (Image &image : from.images)
+        to.images.push_back(std::move(image));
+    for (uint32_t m : from.material)
+        to.material.push_back(materials + m);
+    for (int set = 0; set < 2; ++set)
+        append(to.uv[set], 3 * before, from.uv[set], 3 * count);
+    append(to.tangents, 3 * before, from.tangents, 3 * count);
+}
+
+static void append(Mesh &to, Mesh &&from)
+{
+    size_t vertices = to.positions.size(), before = to.triangle_count();
+    size_t count = from.triangle_count();
+    if (vertices + from.positions.size() >= NO_TRIANGLE || before + count >= NO_TRIANGLE)
+        throw Error(GTX_ERROR_LIMIT, "more vertices or triangles than 32 bits can count");
+    append(to.normals, 3 * before, from.normals, 3 * count);
+    append(to.colors, 3 * before, from.colors, 3 * count);
+    append(to.flags, before, from.flags, count);
+    append(to.appearance, before, std::move(from.appearance), count);
+    to.positions.insert(to.positions.end(), from.positions.begin(), from.positions.end());
+    for (const auto &t : from.triangles)
+        to.triangles.push_back({uint32_t(t[0] + vertices), uint32_t(t[1] + vertices),
+                                uint32_t(t[2] + vertices)});
+}
 
 /* ---- reading ---- */
 
@@ -109,60 +165,36 @@ Models read_models(const ModelInput &first, const char *const *more, uint32_t mo
     return models;
 }
 
-/* ---- one mesh ---- */
-
-/* Appends attributes that either mesh may lack: `fill` stands for what is not there. */
-template <class T>
-static void append(Vector<T> &to, size_t before, Vector<T> &from, size_t count,
-                   const T &fill = T())
+/* What it cannot open is left to the importers, which say why. */
+static bool is_grid(const char *path)
 {
-    if (to.empty() && from.empty())
-        return;
-    to.resize(before, fill);
-    to.insert(to.end(), from.begin(), from.end());
-    to.resize(before + count, fill);
+    std::error_code ignored;
+    return std::filesystem::is_regular_file(path, ignored) && is_grid_file(path);
 }
 
-/* `before` and `count` are triangles. */
-static void append(Appearance &to, size_t before, Appearance &&from, size_t count)
+Models read_sources(const char *first, const char *const *more, uint32_t more_count,
+                    const TextureFiles &textures, Task &task)
 {
-    bool has_materials = !to.material.empty() || !from.material.empty();
-    for (Appearance *a : {&to, &from})
-        if (has_materials && a->material.empty()) {
-            a->material.assign(a == &to ? before : count, uint32_t(a->materials.size()));
-            a->materials.emplace_back();
-        }
-    uint32_t images = uint32_t(to.images.size()), materials = uint32_t(to.materials.size());
-    for (Material &m : from.materials) {
-        for (Texture Material::*map : MATERIAL_TEXTURES)
-            if ((m.*map).used())
-                (m.*map).image += images;
-        to.materials.push_back(m);
+    Vector<const char *> models, grids;
+    for (uint32_t i = 0; i <= more_count; ++i) {
+        const char *path = i ? more[i - 1] : first;
+        (is_grid(path) ? grids : models).push_back(path);
     }
-    for (Image &image : from.images)
-        to.images.push_back(std::move(image));
-    for (uint32_t m : from.material)
-        to.material.push_back(materials + m);
-    for (int set = 0; set < 2; ++set)
-        append(to.uv[set], 3 * before, from.uv[set], 3 * count);
-    append(to.tangents, 3 * before, from.tangents, 3 * count);
+    Models out;
+    if (!models.empty())
+        out = read_models({models[0]}, models.data() + 1, uint32_t(models.size() - 1), textures,
+                          task);
+    for (const char *path : grids) {
+        append(out.grids, naming(path, more_count > 0, task, [&] {
+            return mesh_of(read_grid(path, {}, task), task);
+        }));
+        out.sources.push_back(path);
+        out.hash = 0; /* nothing is cooked from grids and models */
+    }
+    return out;
 }
 
-static void append(Mesh &to, Mesh &&from)
-{
-    size_t vertices = to.positions.size(), before = to.triangle_count();
-    size_t count = from.triangle_count();
-    if (vertices + from.positions.size() >= NO_TRIANGLE || before + count >= NO_TRIANGLE)
-        throw Error(GTX_ERROR_LIMIT, "more vertices or triangles than 32 bits can count");
-    append(to.normals, 3 * before, from.normals, 3 * count);
-    append(to.colors, 3 * before, from.colors, 3 * count);
-    append(to.flags, before, from.flags, count);
-    append(to.appearance, before, std::move(from.appearance), count);
-    to.positions.insert(to.positions.end(), from.positions.begin(), from.positions.end());
-    for (const auto &t : from.triangles)
-        to.triangles.push_back({uint32_t(t[0] + vertices), uint32_t(t[1] + vertices),
-                                uint32_t(t[2] + vertices)});
-}
+/* ---- importing ---- */
 
 /* A quarter turn around x. */
 static void turn_z_up(Mesh &mesh)
@@ -203,6 +235,8 @@ Mesh import_models(Models &models, bool z_up, Task &task)
     models.files.clear();
     if (z_up)
         turn_z_up(mesh);
+    if (!models.grids.triangles.empty())
+        append(mesh, std::move(models.grids));
     return mesh;
 }
 

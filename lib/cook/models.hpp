@@ -21,6 +21,7 @@ struct ModelInput {
 struct Models {
     Vector<ModelFile> files;
     Mesh made;                  /* where it was given as such */
+    Mesh grids;                 /* height grids, which no `z_up` turns */
     /* Every file behind them that is there: the models, then what they refer to. */
     Vector<std::string> sources;
     /* Of the content of all of them, not of their paths. */
@@ -34,6 +35,10 @@ inline std::string text_of(const char *text) { return text ? text : ""; }
 /* `more` holds further files. */
 Models read_models(const ModelInput &first, const char *const *more, uint32_t more_count,
                    const TextureFiles &textures, Task &task);
+
+/* The same, and height grids among them: each a surface through its nodes. */
+Models read_sources(const char *first, const char *const *more, uint32_t more_count,
+                    const TextureFiles &textures, Task &task);
 
 /* One after another into one mesh; gives back the files' memory. With `z_up` the models' +Z becomes
  * +Y, and their +Y -Z. */

@@ -129,6 +129,8 @@ static ModelFile read_grid_file(const std::string &path, Task &task)
 bool is_grid_file(const std::string &path)
 {
     static const char *const images[] = {".png", ".tif", ".tiff", ".exr"};
+    if (is_model_name(path))
+        return false;
     const std::string extension = model_extension(path);
     for (const char *image : images)
         if (extension == image)

@@ -1,12 +1,13 @@
 /* Height grids: files of geologists and of terrain -> rows of values and where they lie. */
 #pragma once
 
-#include "mesh/task.hpp"
+#include "mesh/mesh.hpp"
 #include "base/exact.h"
 
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -55,9 +56,22 @@ struct GridReading {
  * Throws Error: READ, INPUT, UNSUPPORTED, LIMIT, MEMORY. */
 HeightGrid read_grid(const std::string &path, const GridReading &reading, Task &task);
 
-/* Whether read_grid would take a file that is no model: by its content, or the name of an image.
- * Throws Error: READ. */
+/* Whether read_grid would take a file that is no model by its name: by its content, or the name of
+ * an image. Throws Error: READ. */
 bool is_grid_file(const std::string &path);
+
+/* ---- a grid as a surface ---- */
+
+/* East becomes +X, up +Y, north -Z. */
+Vec3d grid_node(const HeightGrid &grid, size_t node);
+/* Calls for each triangle of a row of cells, with its nodes: two a cell, one where one corner has
+ * no value. */
+using OnNodes = std::function<void(const std::array<size_t, 3> &)>;
+void for_each_triangle(const HeightGrid &grid, uint32_t row, const OnNodes &call);
+/* Throws Error: INPUT where the grid lies in degrees. */
+void require_lengths(const HeightGrid &grid);
+/* The whole. Throws Error: INPUT, LIMIT. */
+Mesh mesh_of(const HeightGrid &grid, Task &task);
 
 /* The formats, from the bytes of a file. */
 bool is_irap_classic(std::string_view bytes);

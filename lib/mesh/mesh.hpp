@@ -73,6 +73,8 @@ ModelFile model_in_memory(std::string_view bytes, const std::string &path, Task 
 
 /* What a path says of the format: its extension in lower case, ".gz" left out. */
 std::string model_extension(const std::string &path);
+/* Whether that is a format of models. */
+bool is_model_name(const std::string &path);
 
 /* Paths of the files that a model refers to, whether they exist or not: buffers, images, material
  * libraries. Found without decoding the model; nothing is said of one that is malformed. */

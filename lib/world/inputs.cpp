@@ -18,12 +18,6 @@ static bool is_one_of(const std::string &extension, std::initializer_list<const 
     return std::find(list.begin(), list.end(), extension) != list.end();
 }
 
-static bool is_model(const std::string &path)
-{
-    return is_one_of(model_extension(path),
-                     {".glb", ".gltf", ".drc", ".ply", ".off", ".stl", ".obj"});
-}
-
 /* Other images of a folder are some model's. */
 static bool is_grid(const std::string &path)
 {
@@ -45,12 +39,12 @@ static void add_folder(const std::string &folder, Vector<WorldInput> &out)
 {
     Vector<std::string> paths;
     for (const fs::directory_entry &entry : fs::recursive_directory_iterator(folder))
-        if (entry.is_regular_file() && (is_model(entry.path().native()) ||
+        if (entry.is_regular_file() && (is_model_name(entry.path().native()) ||
                                         is_grid(entry.path().native())))
             paths.push_back(entry.path().native());
     std::sort(paths.begin(), paths.end());
     for (const std::string &path : paths)
-        out.push_back({path, false, !is_model(path)});
+        out.push_back({path, false, !is_model_name(path)});
 }
 
 Vector<WorldInput> find_inputs(const PlanOptions &options)
@@ -71,7 +65,7 @@ Vector<WorldInput> find_inputs(const PlanOptions &options)
         if (is_folder)
             add_folder(path, out);
         else
-            out.push_back({path, false, !is_model(path)});
+            out.push_back({path, false, !is_model_name(path)});
         if (out.size() == before)
             throw Error(GTX_ERROR_EMPTY, "there is no model in the folder " + path);
     }
@@ -84,7 +78,6 @@ Vector<WorldInput> find_inputs(const PlanOptions &options)
 
 namespace {
 
-/* East becomes +X, up +Y, north -Z. */
 class GridStream : public TriangleStream {
 public:
     GridStream(const std::string &path, Task &task) : path_(path), task_(task) {}
@@ -92,39 +85,19 @@ public:
     void read(const TriangleSink &sink) override
     {
         const HeightGrid grid = read_grid(path_, {}, task_);
-        if (grid.in_degrees)
-            throw Error(GTX_ERROR_INPUT, "the grid" + std::string(IN_DEGREES));
-        for (uint32_t j = 0; j + 1 < grid.ny; ++j) {
-            task_.advance(double(j) / grid.ny);
-            for (uint32_t i = 0; i + 1 < grid.nx; ++i)
-                cell(grid, i, j, sink);
+        require_lengths(grid);
+        for (uint32_t row = 0; row + 1 < grid.ny; ++row) {
+            task_.advance(double(row) / grid.ny);
+            for_each_triangle(grid, row, [&](const std::array<size_t, 3> &nodes) {
+                Corners3 out;
+                for (size_t k = 0; k < 3; ++k)
+                    out[k].position = grid_node(grid, nodes[k]);
+                sink(out);
+            });
         }
     }
 
 private:
-    static Vec3d node(const HeightGrid &grid, uint32_t i, uint32_t j)
-    {
-        const auto at = grid.place(i, j);
-        return {at[0], double(grid.at(i, j)), -at[1]};
-    }
-    /* One triangle where one corner has no value. */
-    static void cell(const HeightGrid &grid, uint32_t i, uint32_t j, const TriangleSink &sink)
-    {
-        const Vec3d all[4] = {node(grid, i, j), node(grid, i + 1, j), node(grid, i + 1, j + 1),
-                              node(grid, i, j + 1)};
-        Vec3d known[4];
-        size_t count = 0;
-        for (const Vec3d &p : all)
-            if (!std::isnan(p.y))
-                known[count++] = p;
-        for (size_t k = 2; k < count; ++k) {
-            Corners3 out;
-            out[0].position = known[0];
-            out[1].position = known[k - 1];
-            out[2].position = known[k];
-            sink(out);
-        }
-    }
     const std::string path_;
     Task &task_;
 };

@@ -229,6 +229,27 @@ static void grids_are_drawn_with_contours(void **)
     assert_false(exists("bad.png"));
 }
 
+/* An asset of horizons and a world of the same grid, each against it: compare reads what they do. */
+static void grids_are_sources_of_comparisons(void **)
+{
+    write_text("hills.irap", irap({}, hills));
+    write_text("flat.cps3", cps3({}, [](double, double) { return 0; }));
+    expect(gtx("horizons hills.irap -q -o hills.gtx"), 0);
+    expect(gtx("world plan hills.irap -o hills --triangles 1000 --engine shell"), 0);
+    assert_int_equal(std::system(("sh " + std::string(in_folder("hills/build.sh"))).c_str()), 0);
+    for (const char *what : {"hills.gtx", "hills"}) {
+        expect(gtx("compare %s hills.irap --size 96 --max-holes 0 --max-rms 0.001", what), 0);
+        expect(gtx("compare %s flat.cps3 --size 96 --max-rms 0.001", what), 7);
+        expect(gtx("compare %s hills.irap flat.cps3 --size 96 --max-holes 0", what), 7);
+        expect(gtx("compare %s hills.irap --up z --size 96 --max-holes 0 --max-rms 0.001", what),
+               0); /* a grid says itself where up is */
+    }
+    write_text("degrees.asc", ascii_in_degrees());
+    expect(gtx("compare hills.gtx degrees.asc --size 96"), 3);
+    expect_text("lies in degrees");
+    expect(gtx("compare hills.gtx none.irap --size 96"), 2);
+}
+
 int main()
 {
     const CMUnitTest tests[] = {
@@ -238,6 +259,7 @@ int main()
         cmocka_unit_test(kinds_are_not_blended),
         cmocka_unit_test(properties_have_any_size),
         cmocka_unit_test(grids_are_drawn_with_contours),
+        cmocka_unit_test(grids_are_sources_of_comparisons),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -1,6 +1,8 @@
 /* A thread that opens assets and worlds, and cooks models. */
 #include "cli/view/loader.hpp"
 
+#include "grid/grid.hpp"
+
 #include "cli/cli.h"
 #include "host/jobs.h"
 
@@ -42,7 +44,7 @@ int Loader::on_progress(const gtx_progress *progress, void *user)
 
 AssetPointer Loader::cook(const std::string &path)
 {
-    if (is_grid(path))
+    if (is_grid_file(path))
         return asset_of_grid(path, on_progress, this, [&](gtx_warning kind, const char *text) {
             result_.warnings.push_back({gtx_warning_name(kind), text});
         });

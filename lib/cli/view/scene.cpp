@@ -184,14 +184,6 @@ bool is_asset(const std::string &path)
     return ends_with(path, ".gtx") || (got == 4 && !std::memcmp(start, "\xabGTX", 4));
 }
 
-bool is_grid(const std::string &path)
-{
-    static const char *const models[] = {".glb", ".gltf", ".drc", ".ply", ".off", ".stl", ".obj"};
-    const std::string extension = model_extension(path);
-    return std::find(std::begin(models), std::end(models), extension) == std::end(models) &&
-           is_grid_file(path);
-}
-
 static void add_grid(Scene &scene, const std::string &path, Task &task)
 {
     const auto warn = [&](gtx_warning kind, const char *text) { task.warn(kind, text); };
@@ -209,7 +201,7 @@ void add_file(Scene &scene, const std::string &path, Task &task)
         add_asset(scene, path, identity_transform);
     else if (ends_with(path, ".gltf") || ends_with(path, ".glb"))
         add_gltf(scene, path, task);
-    else if (is_grid(path))
+    else if (is_grid_file(path))
         add_grid(scene, path, task);
     else
         add_model(scene, read_model(path, task), task);

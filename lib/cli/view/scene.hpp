@@ -47,9 +47,6 @@ using WarnFn = std::function<void(gtx_warning, const char *)>;
 AssetPointer asset_of_grid(const std::string &path, gtx_progress_fn progress, void *user,
                            const WarnFn &warn);
 
-/* Whether a file is to be opened as a height grid: no model by its name. Throws Error: READ. */
-bool is_grid(const std::string &path);
-
 /* Adds a .gtx asset, a polygon model, a height grid, a world's folder, or a glTF scene whose nodes
  * place assets through `"extras": {"geotex": "FILE.gtx"}` (paths relative to it). Throws Error. */
 void add_file(Scene &scene, const std::string &path, Task &task);

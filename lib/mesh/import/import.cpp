@@ -126,6 +126,11 @@ static const Format *find_by_name(const std::string &path)
     return nullptr;
 }
 
+bool is_model_name(const std::string &path)
+{
+    return find_by_name(path) != nullptr;
+}
+
 /* By content; then by the name, so that a damaged file is called that and not unknown. */
 static const Format *find_format(const ModelFile &file)
 {
