@@ -2,6 +2,7 @@
  * and nothing is read or written for it. */
 #include "world/worlds.hpp"
 
+#include <algorithm>
 #include <string>
 
 using namespace gtx;
@@ -141,6 +142,44 @@ static void a_plan_knows_closed_surfaces(void **)
     assert_false(is_closed(mesh)); /* inside out */
 }
 
+/* A plan says which tiles an inner one waits for: no fewer than those whose surfaces touch it; and
+ * not all. */
+static void neighbours_are_known_before(void **)
+{
+    write_file(in_folder("terrain.ply"), ply_text(terrain(90)));
+    PlanOptions options;
+    options.models = {in_folder("terrain.ply")};
+    options.folder = in_folder("wide");
+    options.triangles = 1000;
+    const Plan plan = make_world(options);
+    const std::string build = read_file(options.folder + "/build.ninja");
+    size_t touching = 0, known = 0, all = 0;
+    for (const Tile &tile : plan.tiles) {
+        const CellHeader box = CellReader(cell_path(plan, tile)).header();
+        for (int k = 0; k < 3; ++k)
+            assert_true(tile.low[k] <= box.low[k] && box.high[k] <= tile.high[k]);
+        if (tile.is_leaf())
+            continue;
+        const Vector<const Tile *> near = plan.low_neighbours(tile);
+        const size_t at = build.find("build work/facts/" + tile.name + ".json ");
+        const std::string line = build.substr(at, build.find('\n', at) - at) + " ";
+        known += near.size();
+        for (const Tile &other : plan.tiles) {
+            const bool low = other.depth == tile.depth + 1 ||
+                             (other.is_leaf() && other.depth <= tile.depth);
+            if (!low || &plan.tiles[other.parent] == &tile)
+                continue;
+            ++all;
+            if (!CellReader(low_path(plan, other)).header().touches(box))
+                continue;
+            ++touching;
+            assert_true(std::count(near.begin(), near.end(), &other) == 1);
+            assert_true(line.find(" work/facts/" + other.name + ".json ") != line.npos);
+        }
+    }
+    assert_true(touching > 10 && known < 3 * touching && 2 * known < all);
+}
+
 int main()
 {
     const CMUnitTest tests[] = {
@@ -150,6 +189,7 @@ int main()
         cmocka_unit_test(torn_plans_are_refused),
         cmocka_unit_test(facts_of_numbers_that_are_none_are_refused),
         cmocka_unit_test(a_plan_knows_closed_surfaces),
+        cmocka_unit_test(neighbours_are_known_before),
     };
     return cmocka_run_group_tests(tests, make_plan, remove_folder);
 }
