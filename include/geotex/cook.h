@@ -267,8 +267,9 @@ typedef struct gtx_compare_result {
     double seam_p99_steps, seam_max_steps;
 } gtx_compare_result;
 
-/* Measures an asset against `model`, the mesh file that it was cooked from. `desc`, `result`,
- * `report` (format/compare-report.schema.json) and `error` may be NULL. Any thread.
+/* Measures an asset against `model`, the mesh file that it was cooked from, or a height grid
+ * (gtx_height_grid_read) as a surface of two triangles a cell. `desc`, `result`, `report`
+ * (format/compare-report.schema.json) and `error` may be NULL. Any thread.
  * Errors: as gtx_cook_file and gtx_open_file; INPUT if the asset was cooked from another model. */
 GTX_API gtx_result gtx_compare_files(const char *asset, const char *model,
                                      const gtx_compare_desc *desc, gtx_compare_result *result,

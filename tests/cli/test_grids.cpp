@@ -229,7 +229,7 @@ static void grids_are_drawn_with_contours(void **)
     assert_false(exists("bad.png"));
 }
 
-/* An asset of horizons and a world of the same grid, each against it: compare reads what they do. */
+/* An asset of horizons and a world of the same grid, each against it. */
 static void grids_are_sources_of_comparisons(void **)
 {
     write_text("hills.irap", irap({}, hills));
