@@ -66,11 +66,12 @@ double AssetView::height_step(const ViewHit &hit) const
 
 namespace {
 
-/* The pixels that a box may be seen at, a margin for rounding included. */
+/* The pixels that a box may be seen at, and how near, a margin for rounding included. */
 struct Window {
-    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY}, near = INFINITY;
+    uint32_t part;
 
-    Window(const View &view, const Vec3d &from, const Vec3d &to)
+    Window(const View &view, const Vec3d &from, const Vec3d &to, uint32_t number) : part(number)
     {
         for (int corner = 0; corner < 8; ++corner) {
             const Vec3d at = view.project({corner & 1 ? to.x : from.x, corner & 2 ? to.y : from.y,
@@ -79,6 +80,7 @@ struct Window {
                 low[k] = std::min(low[k], at[k] - 2);
                 high[k] = std::max(high[k], at[k] + 2);
             }
+            near = std::min(near, at.z - 2 * view.pixel);
         }
     }
     bool holds(int axis, uint32_t pixel) const
@@ -100,16 +102,22 @@ void AssetView::cast_nearest(const View &view, uint32_t j, const Vector<uint32_t
     none.t = INFINITY;
     none.patch = NO_HIT;
     hits.assign(pixels.size(), none);
+    Vector<Window> windows;
     for (uint32_t n = 0; n < parts_.size(); ++n) {
-        const Part &part = parts_[n];
-        const Window window(view, part.low, part.high);
-        if (!window.holds(1, j))
-            continue;
+        windows.emplace_back(view, parts_[n].low, parts_[n].high, n);
+        if (!windows.back().holds(1, j))
+            windows.pop_back();
+    }
+    std::sort(windows.begin(), windows.end(), [](const Window &a, const Window &b) {
+        return a.near != b.near ? a.near < b.near : a.part < b.part;
+    });
+    for (const Window &window : windows) { /* the nearest hide most of what is behind */
+        const Part &part = parts_[window.part];
         const Vec3d anchor = anchor_of(part.info);
         rays.clear();
         cast.clear();
         for (uint32_t k = 0; k < pixels.size(); ++k) {
-            if (!window.holds(0, pixels[k]))
+            if (!window.holds(0, pixels[k]) || window.near > double(hits[k].t))
                 continue;
             const Vec3d from = view.at(pixels[k], j) - anchor;
             rays.push_back({{float(from.x), float(from.y), float(from.z)}, 0,
@@ -121,7 +129,7 @@ void AssetView::cast_nearest(const View &view, uint32_t j, const Vector<uint32_t
         gtx_raycast(part.caster.get(), rays.data(), found.data(), rays.size(), flags);
         for (size_t k = 0; k < cast.size(); ++k)
             if (found[k].t < hits[cast[k]].t)
-                hits[cast[k]] = {found[k], n};
+                hits[cast[k]] = {found[k], window.part};
     }
 }
 
