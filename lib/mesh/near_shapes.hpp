@@ -93,6 +93,16 @@ struct NearTriangle {
         return best;
     }
 
+    /* How far a point is over the inside of a side, in a measure of that side; below 0 beyond it.
+     * Sides are those from a to b, from b to c and from c to a. */
+    std::array<double, 3> inside(const Vec3d &p) const
+    {
+        const Vec3d d = p - a;
+        const double db = dot(d, ab), dc = dot(d, ac);
+        const double v = cc * db - bc * dc, w = bb * dc - bc * db;
+        return {w, area - v - w, v};
+    }
+
 private:
     static double beside(const Vec3d &from_start, const Vec3d &edge, double along, double square)
     {

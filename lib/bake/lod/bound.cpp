@@ -15,85 +15,110 @@ constexpr size_t FIRST = 2048;
  * more triangles, at double their errors are 40 to 100 % larger (bunny; dragon of 810,080: a fifth,
  * 9 %, 3 to 60). */
 constexpr double OUTLYING = 6;
-/* A finer level is of use up to so much of the distance that matters: a cook of the dragon takes
- * 3 % more instructions at a third of it, and at 0.85. */
-constexpr double MAX_KNOWN = 0.75;
+/* Where more of a finer level's triangles are unsure, all of the source is looked at: boxes around
+ * them have most of it, and many have the same. */
+constexpr double MANY_UNSURE = 0.25;
+/* Triangles that are looked at one after another. */
+constexpr size_t CHUNK = 512;
 
-/* Those of the boxes that touch another; all of space touches it where `near` is null. */
-class Near {
-public:
-    Near(const Vector<gtx::Box> *near, const gtx::Box &box) : all_(!near)
-    {
-        for (size_t i = 0; near && i < near->size(); ++i)
-            if ((*near)[i].touches(box))
-                boxes_.push_back((*near)[i]);
-    }
-    bool touches(const gtx::Box &box) const
-    {
-        return all_ || std::any_of(boxes_.begin(), boxes_.end(),
-                                   [&](const gtx::Box &b) { return b.touches(box); });
-    }
-
-private:
-    bool all_;
-    Vector<gtx::Box> boxes_;
-};
-
-/* `counts(t)`: whether triangle t of `from` is to be near. Nothing is asked of what touches none of
- * the boxes, where there are any. */
-template <class Counts>
-static double greatest(const SortedSurface &from, const Counts &counts, const FarSearch &start,
-                       const Vector<gtx::Box> *boxes, Task &task)
+static gtx::Box box_around(const Corners &corners, double beyond)
 {
-    Vector<double> found(from.tree().parts(), 0);
-    task.parallel(found.size(), [&](size_t part) {
-        FarSearch search = start;
-        const Near near(boxes, from.tree().box(part));
-        from.tree().visit(part, [&](const gtx::Box &box) {
-            return !near.touches(box) || search.is_covered(box);
-        }, [&](uint32_t t) {
-            if (counts(t))
-                search.look(from.corners(t));
-        });
-        found[part] = search.found;
+    gtx::Box box;
+    for (const Vec3d &p : corners) {
+        box.add(p + Vec3d(beyond, beyond, beyond));
+        box.add(p - Vec3d(beyond, beyond, beyond));
+    }
+    return box;
+}
+
+/* Lists that were made in parts, one after the other. */
+template <class Item> static Vector<Item> joined(const Vector<Vector<Item>> &parts)
+{
+    Vector<Item> all;
+    for (const Vector<Item> &part : parts)
+        all.insert(all.end(), part.begin(), part.end());
+    return all;
+}
+
+/* Which triangles touch one of the boxes. */
+static Vector<uint32_t> touching(const SortedSurface &surface, const Vector<gtx::Box> &boxes,
+                                 Task &task)
+{
+    Vector<Vector<uint32_t>> found((boxes.size() + CHUNK - 1) / CHUNK);
+    task.parallel(found.size(), [&](size_t n) {
+        for (size_t i = n * CHUNK; i < std::min(boxes.size(), (n + 1) * CHUNK); ++i)
+            surface.tree().visit_around(NO_PATCH, [&](const gtx::Box &box) {
+                return !box.touches(boxes[i]);
+            }, [&](uint32_t t) {
+                if (box_around(surface.corners(t), 0).touches(boxes[i]))
+                    found[n].push_back(t);
+            });
     }, 1, 1);
-    return *std::max_element(found.begin(), found.end());
+    Vector<uint32_t> all = joined(found);
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    return all;
+}
+
+/* In how many parts triangles are looked at, whatever the number of threads. */
+static size_t parts_of(const SortedSurface &from, const Few &few)
+{
+    return few ? (few->size() + CHUNK - 1) / CHUNK : from.tree().parts();
+}
+
+/* `look(part, search, t)` for each triangle of few, or of all that are not in a box that is near
+ * enough. */
+template <class Look>
+static void look_at(const SortedSurface &from, const Few &few, const FarSearch &start,
+                    const Look &look, Task &task)
+{
+    task.parallel(parts_of(from, few), [&](size_t part) {
+        FarSearch search = start;
+        if (few)
+            for (size_t i = part * CHUNK; i < std::min(few->size(), (part + 1) * CHUNK); ++i)
+                look(part, search, (*few)[i]);
+        else
+            from.tree().visit(part, [&](const gtx::Box &box) { return search.is_covered(box); },
+                              [&](uint32_t t) { look(part, search, t); });
+    }, 1, 1);
+}
+
+/* `counts(t)`: whether triangle t of `from` is to be near. `reached`, or null, is told of those. */
+template <class Counts>
+static double greatest(const SortedSurface &from, const Few &few, const Counts &counts,
+                       const FarSearch &start, Reached *reached, Task &task)
+{
+    Vector<double> found(parts_of(from, few), start.found);
+    look_at(from, few, start, [&](size_t part, FarSearch &search, uint32_t t) {
+        if (!counts(t))
+            return;
+        search.reach = 0;
+        search.look(from.corners(t));
+        found[part] = search.found;
+        if (reached)
+            reached->set(t, search.reach);
+    }, task);
+    return found.empty() ? start.found : *std::max_element(found.begin(), found.end());
 }
 
 /* `add(t, place)` for each triangle that is somewhere farther than start.free. */
 template <class Counts, class Add>
-static Vector<FarPoint> all_far(const SortedSurface &from, const Counts &counts,
-                                const FarSearch &start, const Add &add, Task &task)
+static Vector<FarPoint> all_far(const SortedSurface &from, const Few &few, const Counts &counts,
+                                const FarSearch &start, Reached *reached, const Add &add,
+                                Task &task)
 {
-    Vector<Vector<FarPoint>> found(from.tree().parts());
-    task.parallel(found.size(), [&](size_t part) {
-        FarSearch search = start;
-        from.tree().visit(part, [&](const gtx::Box &box) { return search.is_covered(box); },
-                          [&](uint32_t t) {
-            if (!counts(t))
-                return;
-            const FarPlace place = search.find_far(from.corners(t));
-            if (place.away > 0)
-                found[part].push_back(add(t, place));
-        });
-    }, 1, 1);
-    Vector<FarPoint> all;
-    for (const Vector<FarPoint> &of : found)
-        all.insert(all.end(), of.begin(), of.end());
-    return all;
-}
-
-/* Which triangles are not sure to be within that distance of another surface. */
-static Vector<uint8_t> unsure_of(const SortedSurface &from, const SortedSurface &to, double within,
-                                 Task &task)
-{
-    Vector<uint8_t> unsure(from.size(), 0);
-    task.parallel(from.tree().parts(), [&](size_t part) {
-        FarSearch search = {to, within, 0};
-        from.tree().visit(part, [&](const gtx::Box &box) { return search.is_covered(box); },
-                          [&](uint32_t t) { unsure[t] = !search.is_within(from.corners(t)); });
-    }, 1, 1);
-    return unsure;
+    Vector<Vector<FarPoint>> found(parts_of(from, few));
+    look_at(from, few, start, [&](size_t part, FarSearch &search, uint32_t t) {
+        if (!counts(t))
+            return;
+        search.reach = 0;
+        const FarPlace place = search.find_far(from.corners(t));
+        if (reached)
+            reached->set(t, search.reach);
+        if (place.away > 0)
+            found[part].push_back(add(t, place));
+    }, task);
+    return joined(found);
 }
 
 /* The first points: their greatest distance, and the root of the mean square. */
@@ -166,24 +191,82 @@ LevelSurface::LevelSurface(const LevelMesh &mesh, const Lattice &lattice, Task &
 {
 }
 
-static gtx::Box box_around(const Corners &corners, double beyond)
-{
-    gtx::Box box;
-    for (const Vec3d &p : corners) {
-        box.add(p + Vec3d(beyond, beyond, beyond));
-        box.add(p - Vec3d(beyond, beyond, beyond));
-    }
-    return box;
-}
-
 LevelBound::LevelBound(const BoundSource &source, const LevelMesh &mesh, const Lattice &lattice,
-                       double speck, const Vector<BoundedLevel> &finer, Task &task)
-    : source_(source), mesh_(mesh), lattice_(lattice), speck_(speck),
-      finer_(finer), task_(task), level_(std::make_unique<LevelSurface>(mesh, lattice, task))
+                       double speck, const BoundedLevel *finer, Task &task)
+    : source_(source), mesh_(mesh), lattice_(lattice), speck_(speck), finer_(finer), task_(task)
 {
+    begin(std::make_unique<LevelSurface>(mesh, lattice, task));
 }
 
-Spots LevelBound::spots(double least) const
+/* What is known of triangles stays, where they do. */
+void LevelBound::begin(std::unique_ptr<const LevelSurface> level)
+{
+    const SortedSurface &surface = level->surface;
+    auto from = std::make_unique<Reached>(surface.size());
+    auto to = std::make_unique<Reached>(surface.size());
+    Vector<uint32_t> was(level_ ? mesh_.triangles.size() : 0, NO_PATCH);
+    for (uint32_t t = 0; level_ && t < level_->surface.size(); ++t)
+        was[level_->of_mesh(t)] = t;
+    for (uint32_t t = 0; t < surface.size(); ++t) {
+        const uint32_t old = level_ ? was[level->of_mesh(t)] : NO_PATCH;
+        const bool same = old != NO_PATCH && level_->surface.corners(old) == surface.corners(t);
+        from->tell(t, same ? from_source_->at(old) : 0);
+        to->tell(t, same ? to_source_->at(old) : INFINITY);
+    }
+    level_ = std::move(level);
+    from_source_ = std::move(from);
+    to_source_ = std::move(to);
+}
+
+/* The triangles of the source that may be farther from the level. Each point of another is near
+ * one of the finer level that is near enough to this one: distances add up. */
+Few LevelBound::few_of_source(double within)
+{
+    if (!finer_)
+        return {};
+    const SortedSurface &finer = finer_->level->surface;
+    Vector<Vector<gtx::Box>> boxes(finer.tree().parts());
+    task_.parallel(boxes.size(), [&](size_t part) {
+        FarSearch search = {level_->surface, 0, 0};
+        search.reached = from_source_.get();
+        finer.tree().visit(part, [](const gtx::Box &) { return false; }, [&](uint32_t t) {
+            search.before = finer_->from_source->at(t);
+            search.free = within - search.before;
+            const Corners corners = finer.corners(t);
+            if (!(search.free > 0 && search.is_within(corners)))
+                boxes[part].push_back(box_around(corners, search.before));
+        });
+    }, 1, 1);
+    const Vector<gtx::Box> all = joined(boxes);
+    if (double(all.size()) > MANY_UNSURE * double(finer.size()))
+        return {};
+    return touching(source_.surface(), all, task_);
+}
+
+/* The triangles of the level that may be farther from the source. */
+Few LevelBound::few_of_level(double within)
+{
+    if (!finer_)
+        return {};
+    const SortedSurface &level = level_->surface;
+    Vector<Vector<uint32_t>> few(level.tree().parts());
+    task_.parallel(few.size(), [&](size_t part) {
+        FarSearch search = {finer_->level->surface, within, 0};
+        search.beyonds = finer_->to_source.get();
+        level.tree().visit(part, [](const gtx::Box &) { return false; }, [&](uint32_t t) {
+            search.reach = 0;
+            if (search.is_within(level.corners(t)))
+                to_source_->set(t, search.reach);
+            else
+                few[part].push_back(t);
+        });
+    }, 1, 1);
+    Vector<uint32_t> all = joined(few);
+    std::sort(all.begin(), all.end());
+    return all;
+}
+
+Spots LevelBound::spots(double least)
 {
     task_.limits.work_again(); /* large sources take several looks a triangle at each level */
     const auto shown = [&](uint32_t t) { return is_shown(t); };
@@ -191,34 +274,25 @@ Spots LevelBound::spots(double least) const
     Spots out;
     out.rms = sample(source_.surface(), shown, there, task_).rms;
     out.most = there.free = std::max(least, OUTLYING * out.rms);
-    out.points = all_far(source_.surface(), shown, there, [&](uint32_t t, const FarPlace &place) {
+    there.reached = from_source_.get();
+    out.points = all_far(source_.surface(), few_of_source(there.free), shown, there,
+                         nullptr, [&](uint32_t t, const FarPlace &place) {
         return FarPoint{place.at, source_.surface().corners(t), source_.patch_of(t),
                         level_->of_mesh(place.near), place.away};
     }, task_);
     return out;
 }
 
-/* Where a finer level is near enough, its source is: distances add up, and fewer triangles lie
- * over each. */
-Vector<uint8_t> LevelBound::may_be_far(double within) const
-{
-    const SortedSurface &level = level_->surface;
-    for (auto finer = finer_.rbegin(); finer != finer_.rend(); ++finer)
-        if (finer->away <= MAX_KNOWN * within)
-            return unsure_of(level, finer->level->surface, within - finer->away, task_);
-    return Vector<uint8_t>(level.size(), 1);
-}
-
-Spots LevelBound::spots_of(double least) const
+Spots LevelBound::spots_of(double least)
 {
     task_.limits.work_again();
     const SortedSurface &level = level_->surface;
     const FarSearch back = {source_.surface(), least / LOOSE, 0};
-    const Vector<uint8_t> unsure = may_be_far(back.free);
     Spots out;
     out.of_level = true;
     out.most = least;
-    out.points = all_far(level, [&](uint32_t t) { return unsure[t]; }, back,
+    const auto any = [](uint32_t) { return true; };
+    out.points = all_far(level, few_of_level(back.free), any, back, to_source_.get(),
                          [&](uint32_t t, const FarPlace &place) {
         const Corners c = source_.surface().corners(place.near);
         const auto [x, y, z] = nearest_shares(c, place.at);
@@ -243,19 +317,22 @@ double LevelBound::after(const Spots &spots, const Vector<Corners> &changed)
             box_around(mesh_.corners(mesh_.triangles[p.near], lattice_), spots.most));
     }
     if (!changed.empty())
-        level_ = std::make_unique<LevelSurface>(mesh_, lattice_, task_);
+        begin(std::make_unique<LevelSurface>(mesh_, lattice_, task_));
     const auto any = [](uint32_t) { return true; };
     const auto shown = [&](uint32_t t) { return is_shown(t); };
     FarSearch there = {level_->surface, spots.most, 0};
-    there.found = greatest(source_.surface(), shown, there, &boxes, task_);
+    there.reached = from_source_.get();
+    there.found = greatest(source_.surface(), touching(source_.surface(), boxes, task_), shown,
+                           there, nullptr, task_);
     if (spots.of_level) {
         const FarSearch back = {source_.surface(), spots.most / LOOSE, there.found};
-        there.found = greatest(level_->surface, any, back, &boxes, task_);
+        there.found = greatest(level_->surface, touching(level_->surface, boxes, task_), any, back,
+                               to_source_.get(), task_);
     }
     return there.most();
 }
 
-Strayed LevelBound::whole() const
+Strayed LevelBound::whole()
 {
     task_.limits.work_again();
     const auto any = [](uint32_t) { return true; };
@@ -263,20 +340,23 @@ Strayed LevelBound::whole() const
     FarSearch there = {level_->surface, double(lattice_.step) / 2, 0};
     FarSearch back = {source_.surface(), double(lattice_.step) / 2, 0};
     Strayed out = sample(source_.surface(), shown, there, task_);
-    back.found = std::max(out.most, sample(level_->surface, any, back, task_).most);
+    there.found = std::max(out.most, sample(level_->surface, any, back, task_).most);
     task_.limits.work_again();
-    /* The source first: it takes less, and its spots spare the level most of its looks. */
-    there.found = back.found;
-    back.found = greatest(source_.surface(), shown, there, nullptr, task_);
+    there.reached = from_source_.get();
+    back.found = greatest(source_.surface(), few_of_source(there.most()), shown, there,
+                          nullptr, task_);
     task_.limits.work_again();
-    there.found = greatest(level_->surface, any, back, nullptr, task_);
+    there.found = greatest(level_->surface, few_of_level(back.most()), any, back, to_source_.get(),
+                           task_);
     out.most = there.most();
     return out;
 }
 
 BoundedLevel LevelBound::bounded(double away) &&
 {
-    return {std::move(level_), away};
+    for (size_t t = 0; t < level_->surface.size(); ++t)
+        to_source_->set(t, std::min(to_source_->at(t), away));
+    return {std::move(level_), std::move(from_source_), std::move(to_source_)};
 }
 
 } // namespace gtx::baking

@@ -5,6 +5,7 @@
 #include "bake/lod/spots.hpp"
 
 #include <memory>
+#include <optional>
 
 namespace gtx::baking {
 
@@ -49,25 +50,30 @@ struct LevelSurface {
     uint32_t of_mesh(uint32_t triangle) const { return number[surface.given(triangle)]; }
 };
 
-/* A level, and within which distance of the source all of it is. */
+/* A level, and how far its triangles and the source are from each other. Every point of the source
+ * is within `from_source` of some triangle that says so; all of a triangle is within `to_source` of
+ * the source. */
 struct BoundedLevel {
     std::unique_ptr<const LevelSurface> level;
-    double away;
+    std::unique_ptr<Reached> from_source, to_source;
 };
+
+/* Triangles to look at, ascending; none: all. */
+using Few = std::optional<Vector<uint32_t>>;
 
 /* Bounds a level while it is mended. */
 class LevelBound {
 public:
-    /* `finer` are those before it, the finest first. All outlive it. */
+    /* `finer` is that before it, or null. All outlive it. */
     LevelBound(const BoundSource &source, const LevelMesh &mesh, const Lattice &lattice,
-               double speck, const Vector<BoundedLevel> &finer, Task &task);
+               double speck, const BoundedLevel *finer, Task &task);
 
     /* Of all. */
-    Strayed whole() const;
+    Strayed whole();
     /* What of the source is farther from it than `least`, and much farther than the rest. */
-    Spots spots(double least) const;
+    Spots spots(double least);
     /* What of it is farther from the source than `least`. */
-    Spots spots_of(double least) const;
+    Spots spots_of(double least);
     /* A bound, after what lay there was changed: of the source, and of the level where they were
      * of that, if it was bounded elsewhere by as much as theirs. */
     double after(const Spots &spots, const Vector<Corners> &changed);
@@ -76,15 +82,19 @@ public:
 
 private:
     bool is_shown(uint32_t t) const { return source_.is_shown(t, speck_); }
-    Vector<uint8_t> may_be_far(double within) const;
+    void begin(std::unique_ptr<const LevelSurface> level);
+    Few few_of_source(double within);
+    Few few_of_level(double within);
 
     const BoundSource &source_;
     const LevelMesh &mesh_;
     const Lattice &lattice_;
     const double speck_;
-    const Vector<BoundedLevel> &finer_;
+    const BoundedLevel *finer_;
     Task &task_;
     std::unique_ptr<const LevelSurface> level_;
+    std::unique_ptr<Reached> from_source_;
+    std::unique_ptr<Reached> to_source_; /* infinite where it is not known yet */
 };
 
 } // namespace gtx::baking

@@ -11,11 +11,12 @@ namespace {
 
 /* Of an angle of a triangle: what thinner ones say of places over them is lost in rounding. */
 constexpr double MIN_SINE = 1e-6;
-/* Triangles that lie over another; at half the dragon's cook takes 3 % more instructions, at double
- * 0.7 % fewer. */
-constexpr size_t MAX_OVER = 64;
 /* From a triangle close by to the one over the middle: a limit. */
 constexpr int MAX_STEPS = 16;
+
+/* Of what may be the distance to a triangle that lies over another its corners tell so much at most:
+ * beyond that it is worth a closer look. TODO */
+constexpr double TIGHT = 0.25;
 
 /* A place over a triangle: the shares of its corners, of which none is below 0 inside, and the
  * height over its plane. */
@@ -48,68 +49,23 @@ private:
     bool is_flat_;
 };
 
-/* Of a triangle what lies over another, clipped side by side. A side adds a corner; one through a
- * corner may for rounding be crossed again and again, and adds half as many as there are. */
-struct Piece {
-    static constexpr int MAX = 9;
-    Over corner[MAX];
-    int count = 3;
-
-    void clip(int k)
-    {
-        Over left[MAX];
-        int kept = 0;
-        for (int i = 0; i < count; ++i) {
-            const Over &from = corner[i], &to = corner[i + 1 < count ? i + 1 : 0];
-            const double a = from.share[k], b = to.share[k];
-            if (a >= 0)
-                left[kept++] = from;
-            if ((a < 0) != (b < 0)) {
-                const double t = a / (a - b);
-                Over &at = left[kept++];
-                for (int j = 0; j < 3; ++j)
-                    at.share[j] = from.share[j] + (to.share[j] - from.share[j]) * t;
-                at.height = from.height + (to.height - from.height) * t;
-            }
-        }
-        std::copy_n(left, kept, corner);
-        count = kept;
-    }
-    bool is_within(double most) const
-    {
-        bool all = true;
-        for (int i = 0; i < count; ++i)
-            all = all && std::abs(corner[i].height) <= most;
-        return all;
-    }
-};
-
-/* Whether a triangle is nowhere higher or lower over the other than `most`. */
-bool is_within(const Over (&at)[3], double most)
-{
-    Piece piece = {{at[0], at[1], at[2]}};
-    for (int k = 0; k < 3 && !piece.is_within(most); ++k)
-        piece.clip(k);
-    return piece.is_within(most);
-}
-
 /* An edge over the triangle, or beside it. The way between its vertices does not change a bit of
  * what is said of it: both its triangles say the same. */
 class Edge {
 public:
     Edge(bool up, const Over &from, const Over &to)
-        : up_(up), a_(up ? from.share : to.share), b_(up ? to.share : from.share),
-          x_(b_[1] - a_[1]), y_(b_[2] - a_[2]), first_(y_ * a_[1] - x_ * a_[2])
+        : up_(up), a_(up ? from : to), b_(up ? to : from), x_(b_.share[1] - a_.share[1]),
+          y_(b_.share[2] - a_.share[2]), first_(y_ * a_.share[1] - x_ * a_.share[2])
     {
     }
     /* Whether a part of it is over the inside. */
     bool crosses() const
     {
         const double second = first_ - y_, third = first_ + x_;
+        const double *a = a_.share, *b = b_.share;
         return !(((first_ >= 0) & (second >= 0) & (third >= 0)) |
-                 ((first_ <= 0) & (second <= 0) & (third <= 0)) |
-                 ((a_[0] <= 0) & (b_[0] <= 0)) | ((a_[1] <= 0) & (b_[1] <= 0)) |
-                 ((a_[2] <= 0) & (b_[2] <= 0)));
+                 ((first_ <= 0) & (second <= 0) & (third <= 0)) | ((a[0] <= 0) & (b[0] <= 0)) |
+                 ((a[1] <= 0) & (b[1] <= 0)) | ((a[2] <= 0) & (b[2] <= 0)));
     }
     /* Whether the middle is to its left, or on it, of one of the ways. */
     bool has_middle() const
@@ -117,17 +73,46 @@ public:
         const double middle = first_ + (x_ - y_) / 3;
         return up_ ? middle >= 0 : middle < 0;
     }
+    /* How far to its left a corner is: greater than 0 there. */
+    double left(int corner) const
+    {
+        const double at = corner == 0 ? first_ : corner == 1 ? first_ - y_ : first_ + x_;
+        return up_ ? at : -at;
+    }
+    /* How high or low it is over the triangle; 0 where it is beside it. */
+    double height() const
+    {
+        double from = 0, to = 1;
+        for (int k = 0; k < 3; ++k) {
+            const double a = a_.share[k], b = b_.share[k];
+            if ((a < 0) & (b < 0))
+                return 0;
+            if (a < 0)
+                from = std::max(from, a / (a - b));
+            else if (b < 0)
+                to = std::min(to, a / (a - b));
+        }
+        const double way = b_.height - a_.height;
+        return from <= to ? greater(a_.height + way * from, a_.height + way * to) : 0;
+    }
+    /* The magnitude of that with the greater; what is not a number is infinite. */
+    static double greater(double a, double b)
+    {
+        const double most = std::max(std::abs(a), std::abs(b));
+        return most < INFINITY && b == b ? most : INFINITY;
+    }
 
 private:
     bool up_;
-    const double *a_, *b_;       /* shares at the lower vertex and the higher */
+    const Over &a_, &b_;         /* at the lower vertex and the higher */
     double x_, y_, first_;       /* > 0: the first corner is to the left of the way up */
 };
 
-/* A triangle of the surface; NO_TRIANGLE beyond its border. */
+/* A triangle of the surface; NO_TRIANGLE beyond its border. Many are made that nobody needs, and
+ * begin with nothing. */
 struct Placed {
-    uint32_t triangle = NO_TRIANGLE;
-    int known = -1;              /* the side that the surface came over */
+    uint32_t triangle;
+    int known;                   /* the side that the surface came over; -1: none */
     Over at[3];
 
     bool faces() const
@@ -140,8 +125,9 @@ struct Placed {
 /* The part of a surface that lies over a triangle. */
 class Cover {
 public:
-    Cover(const Prism &prism, const SortedSurface &surface, double most)
-        : prism_(prism), surface_(surface), most_(most)
+    Cover(const Prism &prism, const SortedSurface &surface, double most, const Reached *beyonds,
+          CoverParts &parts)
+        : prism_(prism), surface_(surface), most_(most), beyonds_(beyonds), parts_(parts)
     {
     }
     /* That over the middle, in a few steps from one close by; else none. */
@@ -153,16 +139,18 @@ private:
     Placed whole(uint32_t triangle) const;
     Placed beyond(const Placed &from, int side) const;
     Edge edge(const Placed &of, int side) const;
+    double height_over(const Placed &of, double enough) const;
     bool is_new(uint32_t triangle) const
     {
-        return std::find(seen_, seen_ + count_, triangle) == seen_ + count_;
+        const uint32_t *end = parts_.triangle + parts_.count;
+        return std::find(static_cast<const uint32_t *>(parts_.triangle), end, triangle) == end;
     }
 
     const Prism &prism_;
     const SortedSurface &surface_;
     const double most_;
-    uint32_t seen_[MAX_OVER];
-    size_t count_ = 0;
+    const Reached *beyonds_;
+    CoverParts &parts_;
 };
 
 Placed Cover::whole(uint32_t triangle) const
@@ -196,6 +184,28 @@ Edge Cover::edge(const Placed &of, int side) const
     return Edge(v[side] < v[next], of.at[side], of.at[next]);
 }
 
+/* How high or low a triangle is over the other: at its corners, where that is within `enough`, else
+ * at most where its edges are over the other and where the other's corners are under it. */
+double Cover::height_over(const Placed &of, double enough) const
+{
+    const Over *at = of.at;
+    double most = Edge::greater(Edge::greater(at[0].height, at[1].height), at[2].height);
+    if (most <= enough)
+        return most;
+    const Edge edges[3] = {edge(of, 0), edge(of, 1), edge(of, 2)};
+    most = 0;
+    for (const Edge &e : edges)
+        most = Edge::greater(most, e.height());
+    for (int corner = 0; corner < 3; ++corner) {
+        const double a = edges[1].left(corner), b = edges[2].left(corner),
+                     c = edges[0].left(corner);
+        if (a >= 0 && b >= 0 && c >= 0)
+            most = Edge::greater(most, (at[0].height * a + at[1].height * b + at[2].height * c) /
+                                           (a + b + c));
+    }
+    return most;
+}
+
 Placed Cover::over_middle(uint32_t near) const
 {
     Placed at = whole(near);
@@ -207,12 +217,13 @@ Placed Cover::over_middle(uint32_t near) const
             return at;
         at = beyond(at, side);
     }
-    return {};
+    at.triangle = NO_TRIANGLE;
+    return at;
 }
 
 bool Cover::spreads(const Placed &middle)
 {
-    Placed left[MAX_OVER + 2];
+    Placed left[CoverParts::MAX + 2];
     size_t size = 0;
     left[0] = middle;
     left[size++].known = -1;     /* nothing is said yet of what came there */
@@ -222,9 +233,14 @@ bool Cover::spreads(const Placed &middle)
             return false;
         if (!is_new(at.triangle))
             continue;
-        if (count_ == MAX_OVER || !at.faces() || !is_within(at.at, most_))
+        if (parts_.count == CoverParts::MAX || !at.faces())
             return false;
-        seen_[count_++] = at.triangle;
+        const double more = beyonds_ ? beyonds_->at(at.triangle) : 0;
+        const double height = height_over(at, TIGHT * most_);
+        if (!(height + more <= most_))
+            return false;
+        parts_.triangle[parts_.count] = at.triangle;
+        parts_.away[parts_.count++] = height + more;
         for (int side = 0; side < 3; ++side)
             if (side != at.known && edge(at, side).crosses() &&
                 is_new(surface_.beside(at.triangle)[side]))
@@ -236,13 +252,15 @@ bool Cover::spreads(const Placed &middle)
 } // namespace
 
 uint32_t covering(const Corners &triangle, const SortedSurface &surface, double most,
-                  uint32_t near)
+                  uint32_t near, const Reached *beyonds, CoverParts *parts)
 {
     const Prism prism(triangle);
     if (prism.is_flat())
         return NO_PATCH;
-    Cover cover(prism, surface, most);
+    CoverParts none;
+    Cover cover(prism, surface, most, beyonds, parts ? *parts : none);
     Placed middle;
+    middle.triangle = NO_TRIANGLE;
     if (near < surface.size())
         middle = cover.over_middle(near);
     if (middle.triangle == NO_TRIANGLE) {

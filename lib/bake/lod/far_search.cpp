@@ -3,6 +3,7 @@
 #include "mesh/edges.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace gtx::baking {
 
@@ -18,28 +19,83 @@ static double radius_of(const Corners &c, const Vec3d &middle)
 
 bool FarSearch::is_covered_whole(const Corners &c)
 {
-    const uint32_t last = near, over = covering(c, to, most(), near);
+    CoverParts parts;
+    const uint32_t last = near, over = covering(c, to, most(), near, beyonds, &parts);
     if (over == NO_PATCH)
         return false;
+    for (size_t i = 0; i < parts.count; ++i)
+        tell(parts.triangle[i], parts.away[i]);
     near = over;
     if (near != last)
         remember(last);
     return true;
 }
 
+/* Each part is convex, and so are distances: corners tell. */
+bool FarSearch::is_covered_by_two(const FarCorner &a, const FarCorner &b, const FarCorner &c)
+{
+    if (near >= to.size())
+        return false;
+    const Vec3d at[3] = {a.at, b.at, c.at};
+    const std::array<double, 3> inside[3] = {nearest.inside(at[0]), nearest.inside(at[1]),
+                                             nearest.inside(at[2])};
+    int side = 0;
+    double least = 0;
+    for (int k = 0; k < 3; ++k)
+        for (int n = 0; n < 3; ++n)
+            if (inside[n][k] < least) {
+                least = inside[n][k];
+                side = k;
+            }
+    const uint32_t other = to.beside(near)[side];
+    if (!(least < 0) || other >= to.size())
+        return false;
+    const Corners corners = to.corners(other);
+    const NearTriangle beside(corners[0], corners[1], corners[2]);
+    const double more = beyonds ? beyonds->at(other) : 0;
+    const double limit = most() - beyond, limit_beside = most() - more;
+    double here = 0, there = 0;
+    for (int n = 0; n < 3; ++n) {
+        const int next = n == 2 ? 0 : n + 1;
+        const double from = inside[n][side], to_next = inside[next][side];
+        if (from >= 0)
+            here = std::max(here, nearest.distance2(at[n]));
+        else
+            there = std::max(there, beside.distance2(at[n]));
+        if ((from < 0) != (to_next < 0)) {
+            const Vec3d cut = at[n] + (at[next] - at[n]) * (from / (from - to_next));
+            here = std::max(here, nearest.distance2(cut));
+            there = std::max(there, beside.distance2(cut));
+        }
+        if (!(limit >= 0 && limit_beside >= 0 && here <= limit * limit &&
+              there <= limit_beside * limit_beside))
+            return false;
+    }
+    tell(near, std::sqrt(here) + beyond);
+    tell(other, std::sqrt(there) + more);
+    if (inside[0][side] + inside[1][side] + inside[2][side] < 0) { /* more of it is there */
+        remember(std::exchange(near, other));
+    }
+    return true;
+}
+
 bool FarSearch::is_within(FarCorner &a, FarCorner &b, FarCorner &c)
 {
     cancel_point();
-    if (is_covered(a, b, c) || was_covered(a, b, c))
+    if (is_covered(a, b, c) || was_covered(a, b, c) || is_covered_by_two(a, b, c))
         return true;
     const Corners corners = {a.at, b.at, c.at};
     const Vec3d middle = (a.at + b.at + c.at) / 3;
     const double radius = radius_of(corners, middle), enough = free - radius;
     if (enough > 0) {
         const double away = distance(middle, enough);
-        if (away <= enough || is_covered(a, b, c))
+        if (away + beyond <= enough) {
+            tell(near, away + beyond + radius);
             return true;
-        if (away > free || away + radius <= LOOSE * free)
+        }
+        if (is_covered(a, b, c))
+            return true;
+        if (away + beyond > free || away + beyond + radius <= LOOSE * free)
             return false;
     } else if (free * free < MANY * to.mean_area() && is_covered_whole(corners)) {
         return true;
@@ -52,19 +108,25 @@ bool FarSearch::is_within(FarCorner &a, FarCorner &b, FarCorner &c)
 void FarSearch::look(FarCorner &a, FarCorner &b, FarCorner &c)
 {
     cancel_point();
-    if (is_covered(a, b, c) || was_covered(a, b, c))
+    if (is_covered(a, b, c) || was_covered(a, b, c) || is_covered_by_two(a, b, c))
         return;
     const Vec3d middle = (a.at + b.at + c.at) / 3;
     const double radius = radius_of({a.at, b.at, c.at}, middle);
     const double enough = most() - radius;
     if (enough > 0) {
         const double away = distance(middle, enough);
-        if (away <= enough)
+        if (away <= enough) {
+            tell(near, away + radius);
             return;
+        }
         if (away > found)
             farthest = {middle, near};
         found = std::max(found, away);
-        if (away + radius <= most() || is_covered(a, b, c))
+        if (away + radius <= most()) {
+            tell(near, away + radius);
+            return;
+        }
+        if (is_covered(a, b, c))
             return;
     } else if (most() * most() < MANY * to.mean_area() &&
                is_covered_whole({a.at, b.at, c.at})) {

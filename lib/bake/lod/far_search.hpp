@@ -6,6 +6,8 @@
 #include "mesh/mesh.hpp"
 #include "mesh/nearest.hpp"
 
+#include <atomic>
+
 namespace gtx::baking {
 
 /* The bound that is told, as a multiple of the farthest point found: at 1.05 twice as many
@@ -70,6 +72,37 @@ private:
     double mean_area_ = 0;
 };
 
+/* A distance of each triangle of a surface: the greatest that any thread tells. */
+class Reached {
+public:
+    explicit Reached(size_t triangles) : away_(triangles) {}
+
+    void tell(size_t triangle, double away)
+    {
+        float most = away_[triangle].load(std::memory_order_relaxed);
+        while (away > double(most) &&
+               !away_[triangle].compare_exchange_weak(most, rounded_up(away),
+                                                      std::memory_order_relaxed)) {
+        }
+    }
+    void set(size_t triangle, double away)
+    {
+        away_[triangle].store(rounded_up(away), std::memory_order_relaxed);
+    }
+    double at(size_t triangle) const
+    {
+        return double(away_[triangle].load(std::memory_order_relaxed));
+    }
+
+private:
+    static float rounded_up(double away)
+    {
+        const float near = float(away);
+        return double(near) < away ? gtx::Box::above(near) : near;
+    }
+    Vector<std::atomic<float>> away_;
+};
+
 /* A point, and how far it was from the nearest triangle at the time. */
 struct FarCorner {
     Vec3d at;
@@ -81,10 +114,12 @@ struct FarCorner {
 struct KnownTriangle {
     uint32_t triangle = NO_PATCH;
     NearTriangle shape = {};
+    double beyond = 0;           /* as in FarSearch */
     Vec3d low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
 
     KnownTriangle() = default;
-    KnownTriangle(uint32_t triangle, const NearTriangle &shape) : triangle(triangle), shape(shape)
+    KnownTriangle(uint32_t triangle, const NearTriangle &shape, double beyond)
+        : triangle(triangle), shape(shape), beyond(beyond)
     {
         for (const Vec3d &p : {shape.a, shape.b, shape.a + shape.ac})
             for (int k = 0; k < 3; ++k) {
@@ -92,12 +127,14 @@ struct KnownTriangle {
                 high[k] = std::max(high[k], p[k]);
             }
     }
-    bool is_within(const Vec3d &p, double limit) const
+    /* The squared distance; infinity where it is greater than `limit`. */
+    double distance2(const Vec3d &p, double limit) const
     {
         for (int k = 0; k < 3; ++k)
             if (!(p[k] >= low[k] - limit && p[k] <= high[k] + limit))
-                return false;
-        return shape.distance2(p) <= limit * limit;
+                return INFINITY;
+        const double square = shape.distance2(p);
+        return square <= limit * limit ? square : INFINITY;
     }
 };
 
@@ -109,7 +146,8 @@ struct FarPlace {
     int corner = -1;             /* of the triangle, where it is one */
 };
 
-/* From triangles to a surface. */
+/* From triangles to a surface. What is said to be within a distance is told: to `reached`, of the
+ * triangles that it is within that distance of, and to `reach`. */
 struct FarSearch {
     const SortedSurface &to;
     double free;                 /* a distance of no interest */
@@ -119,6 +157,13 @@ struct FarSearch {
     NearTriangle nearest = {};   /* that */
     KnownTriangle earlier[EARLIER] = {}; /* others that were */
     size_t next = 0;
+    Reached *reached = nullptr;
+    double before = 0;           /* that is added to what `reached` is told */
+    double reach = 0;
+    /* Where `to` stands for what is beyond it: how far beyond each of its triangles that may be,
+     * and beyond `near`. */
+    const Reached *beyonds = nullptr;
+    double beyond = 0;
 
     double most() const { return std::max(free, LOOSE * found); }
     bool is_within(FarCorner &c, double square) const
@@ -129,41 +174,61 @@ struct FarSearch {
         }
         return c.away <= square;
     }
+    void tell(uint32_t triangle, double away)
+    {
+        reach = std::max(reach, away);
+        if (reached)
+            reached->tell(triangle, before + away);
+    }
     /* Whether that triangle is within most() of all that the corners span: distances from a convex
      * set are greatest at corners. */
-    bool is_covered(FarCorner &a, FarCorner &b, FarCorner &c) const
+    bool is_covered(FarCorner &a, FarCorner &b, FarCorner &c)
     {
-        const double limit = most() * most();
-        return near < to.size() && is_within(a, limit) && is_within(b, limit) &&
-               is_within(c, limit);
+        const double limit = most() - beyond, square = limit * limit;
+        if (!(near < to.size() && limit >= 0 && is_within(a, square) && is_within(b, square) &&
+              is_within(c, square)))
+            return false;
+        tell(near, std::sqrt(std::max({a.away, b.away, c.away})) + beyond);
+        return true;
     }
     /* The same of an earlier one, which becomes the nearest. */
     bool was_covered(const FarCorner &a, const FarCorner &b, const FarCorner &c)
     {
         for (KnownTriangle &known : earlier) {
-            if (!known.is_within(a.at, most()) || !known.is_within(b.at, most()) ||
-                !known.is_within(c.at, most()))
+            const double limit = most() - known.beyond;
+            double square = limit >= 0 ? known.distance2(a.at, limit) : INFINITY;
+            for (const FarCorner *corner : {&b, &c})
+                if (square < INFINITY)
+                    square = std::max(square, known.distance2(corner->at, limit));
+            if (!(square < INFINITY))
                 continue;
-            const KnownTriangle last(near, nearest);
+            tell(known.triangle, std::sqrt(square) + known.beyond);
+            const KnownTriangle last(near, nearest, beyond);
             near = known.triangle;
             nearest = known.shape;
+            beyond = known.beyond;
             known = last;
             return true;
         }
         return false;
     }
+    /* Not told to `reach`. */
     bool is_covered(const gtx::Box &box) const
     {
         const double limit = most() * most();
         if (near >= to.size())
             return false;
+        double square = 0;
         for (int corner = 0; corner < 8; ++corner) {
             Vec3d p;
             for (int k = 0; k < 3; ++k)
                 p[k] = corner >> k & 1 ? box.high[k] : box.low[k];
-            if (!(nearest.distance2(p) <= limit))
+            square = std::max(square, nearest.distance2(p));
+            if (!(square <= limit))
                 return false;
         }
+        if (reached)
+            reached->tell(near, before + std::sqrt(square));
         return true;
     }
     double distance(const Vec3d &p, double enough)
@@ -182,11 +247,15 @@ struct FarSearch {
     /* That another was nearest before. */
     void remember(uint32_t last)
     {
-        earlier[next] = last < to.size() ? KnownTriangle(last, nearest) : KnownTriangle();
+        earlier[next] = last < to.size() ? KnownTriangle(last, nearest, beyond) : KnownTriangle();
         next = (next + 1) % EARLIER;
         const Corners c = to.corners(near);
         nearest = {c[0], c[1], c[2]};
+        beyond = beyonds ? beyonds->at(near) : 0;
     }
+    /* Whether a triangle that the surface's edge beside the nearest triangle cuts in two is as near
+     * to those two. */
+    bool is_covered_by_two(const FarCorner &a, const FarCorner &b, const FarCorner &c);
     /* Whether the surface covers a triangle that near to it. */
     bool is_covered_whole(const Corners &c);
     /* Where a triangle is farther than `free`: at a corner, if any of them is, else where it is

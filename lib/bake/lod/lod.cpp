@@ -164,16 +164,17 @@ static void find_errors(const LodJob &job, Line &line)
 {
     const End end = {line, Line::BOUNDED};
     const BoundSource source(job.source, job.task);
-    Vector<BoundedLevel> finer;
+    BoundedLevel finer;
     float told = 0;
     for (size_t k = 0; MadeLevel *level = line.at(k, Line::MADE, job.task); ++k) {
-        LevelBound bound(source, level->mesh, job.lattice, level->speck, finer, job.task);
+        LevelBound bound(source, level->mesh, job.lattice, level->speck, k ? &finer : nullptr,
+                         job.task);
         const Strayed strayed = level->far ? bound.whole() : mend(job, bound, level->mesh);
         const float most = float(std::max(strayed.most, level->speck));
         level->error = told = std::max(told, std::nextafter(most, INFINITY));
         level->rms = float(strayed.rms);
         line.pass();
-        finer.push_back(std::move(bound).bounded(strayed.most));
+        finer = std::move(bound).bounded(strayed.most);
     }
 }
 
