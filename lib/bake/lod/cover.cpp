@@ -142,8 +142,15 @@ private:
     double height_over(const Placed &of, double enough) const;
     bool is_new(uint32_t triangle) const
     {
-        const uint32_t *end = parts_.triangle + parts_.count;
-        return std::find(static_cast<const uint32_t *>(parts_.triangle), end, triangle) == end;
+        uint32_t same = 0;
+        for (size_t i = 0; i < parts_.count; ++i) /* faster than to end where it is found */
+            same |= parts_.triangle[i] == triangle;
+        return !same;
+    }
+    size_t add(uint32_t triangle)
+    {
+        parts_.triangle[parts_.count] = triangle;
+        return parts_.count++;
     }
 
     const Prism &prism_;
@@ -223,28 +230,33 @@ Placed Cover::over_middle(uint32_t near) const
 
 bool Cover::spreads(const Placed &middle)
 {
-    Placed left[CoverParts::MAX + 2];
-    size_t size = 0;
+    Placed left[CoverParts::MAX];
+    size_t slot[CoverParts::MAX], size = 0;
     left[0] = middle;
-    left[size++].known = -1;     /* nothing is said yet of what came there */
+    left[0].known = -1;          /* nothing is said yet of what came there */
+    slot[size++] = add(middle.triangle);
     while (size) {
         const Placed at = left[--size];
-        if (at.triangle == NO_TRIANGLE)
-            return false;
-        if (!is_new(at.triangle))
-            continue;
-        if (parts_.count == CoverParts::MAX || !at.faces())
+        if (!at.faces())
             return false;
         const double more = beyonds_ ? beyonds_->at(at.triangle) : 0;
-        const double height = height_over(at, TIGHT * most_);
-        if (!(height + more <= most_))
+        const double away = more + height_over(at, TIGHT * most_);
+        if (!(away <= most_))
             return false;
-        parts_.triangle[parts_.count] = at.triangle;
-        parts_.away[parts_.count++] = height + more;
-        for (int side = 0; side < 3; ++side)
-            if (side != at.known && edge(at, side).crosses() &&
-                is_new(surface_.beside(at.triangle)[side]))
-                left[size++] = beyond(at, side);
+        parts_.away[slot[size]] = away;
+        for (int side = 0; side < 3; ++side) {
+            if (side == at.known || !edge(at, side).crosses())
+                continue;
+            const uint32_t next = surface_.beside(at.triangle)[side];
+            if (next == NO_TRIANGLE)
+                return false;
+            if (!is_new(next))
+                continue;
+            if (parts_.count == CoverParts::MAX)
+                return false;
+            slot[size] = add(next);
+            left[size++] = beyond(at, side);
+        }
     }
     return true;
 }
