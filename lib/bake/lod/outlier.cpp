@@ -32,17 +32,32 @@ struct Reached {
     }
 };
 
+/* Whether all of a triangle is farther from a point than that: by a ball around it. */
+static bool is_beyond(const Simplified &surface, uint32_t triangle, const Vec3d &point, double away)
+{
+    const auto &[a, b, c] = surface.triangles[triangle];
+    const Vec3d *at = surface.positions.data();
+    const Vec3d middle = (at[a] + at[b] + at[c]) * (1.0 / 3), from = point - middle;
+    double square = 0;
+    for (uint32_t v : {a, b, c})
+        square = std::max(square, dot(at[v] - middle, at[v] - middle));
+    const double reach = away + std::sqrt(square);
+    return dot(from, from) > reach * reach;
+}
+
 /* A point above the `count` triangles of `near`, where it is farther from them than `most`. Which
  * side it is on is told by those that are all nearest to it: one, or those around an edge or a
- * corner. */
+ * corner. One of them is no farther than `known`, squared. */
 static Outlier find_outlier(const Simplified &surface, const uint32_t *near, size_t count,
-                            const Vec3d &point, double most)
+                            const Vec3d &point, double most, double known)
 {
-    const double same = 1 + 1e-9;
+    const double same = 1 + 1e-9, bound = std::sqrt(known) * same;
     Outlier out;
     Vec3d facing;
     double least = INFINITY;
     for (size_t i = 0; i < count; ++i) {
+        if (is_beyond(surface, near[i], point, bound))
+            continue;
         const Reached reached(surface, near[i], point);
         const std::array<Vec3d, 3> &c = reached.corner;
         const double distance = dot(reached.way, reached.way);
@@ -131,13 +146,14 @@ static Outlier find_worst(const Simplified &s, uint32_t vertex, double most)
         if (planes.below(s.points[i], least))
             continue;
         const Vec3d way = Reached(s, around[planes.towards(s.points[i])], s.points[i]).way;
-        if (dot(way, way) <= least * least ||
-            find_outlier(s, around, s.start[vertex + 1] - s.start[vertex], s.points[i],
-                         least).height == 0)
+        const double known = dot(way, way);
+        if (known <= least * least ||
+            find_outlier(s, around, s.start[vertex + 1] - s.start[vertex], s.points[i], least,
+                         known).height == 0)
             continue;
         if (near.empty())
             near = find_near(s, vertex);
-        const Outlier o = find_outlier(s, near.data(), near.size(), s.points[i], least);
+        const Outlier o = find_outlier(s, near.data(), near.size(), s.points[i], least, known);
         if (o.height > 0)
             worst = o;
     }

@@ -107,8 +107,7 @@ void Simplifier::State::settle()
     find_members(surface.first, surface.points);
     draw_out(surface, MAX_OUTSIDE * std::sqrt(error),
              [&](uint32_t vertex, const Vec3d &way) { return move(vertex, way); }, task, done());
-    if (first_points)
-        keep_points();
+    keep_points();
 }
 
 } // namespace gtx::baking
