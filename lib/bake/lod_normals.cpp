@@ -32,16 +32,37 @@ Vec3d loaded(const float v[3])
     return {double(v[0]), double(v[1]), double(v[2])};
 }
 
+/* What every pair of bytes stands for. */
+class Decoded {
+public:
+    Decoded() : normals_(COUNT)
+    {
+        for (size_t i = 0; i < COUNT; ++i) {
+            const uint8_t code[2] = {uint8_t(i), uint8_t(i >> 8)};
+            gtx_decode_normal(code, &normals_[i].x);
+        }
+    }
+    const float *at(const uint8_t code[2]) const
+    {
+        return &normals_[size_t(code[0]) | size_t(code[1]) << 8].x;
+    }
+
+private:
+    static constexpr size_t COUNT = 1 << 16;
+    Vector<Vec3f> normals_;
+};
+
 /* Of a patch: what takes points to its texels, and normals from there. */
 struct Place {
     const gtx_patch &patch;
     const NormalMaps &maps;
+    const Decoded &decoded;
     gtx_patch_frame frame;
     float rows[3][3];
     double weight; /* the area of a texel */
 
-    Place(const NormalMaps &maps, uint32_t index)
-        : patch(maps.patches[index]), maps(maps),
+    Place(const NormalMaps &maps, const Decoded &decoded, uint32_t index)
+        : patch(maps.patches[index]), maps(maps), decoded(decoded),
           frame(gtx_patch_frame_of(&patch, maps.height_bits))
     {
         gtx_normal_frame(&patch, rows);
@@ -63,8 +84,7 @@ struct Place {
     }
     Vec3d normal(uint32_t x, uint32_t y) const
     {
-        float n[3];
-        gtx_decode_normal(maps.normal + 2 * texel(x, y), n);
+        const float *n = decoded.at(maps.normal + 2 * texel(x, y));
         Vec3d out;
         for (int k = 0; k < 3; ++k)
             for (int r = 0; r < 3; ++r)
@@ -93,6 +113,7 @@ struct Place {
 struct Fit {
     const gtx_lod_mesh &level;
     const NormalMaps &maps;
+    const Decoded decoded;
     Vector<Vec3d> normals; /* unit */
 
     Vec3d position(uint32_t vertex) const
@@ -105,7 +126,7 @@ struct Fit {
     template <class Each> void each_triangle(Each &&each) const
     {
         for (uint32_t p = 0; p < maps.patch_count; ++p) {
-            const Place place(maps, p);
+            const Place place(maps, decoded, p);
             for (uint32_t t = level.first[p]; t < level.first[p + 1]; ++t) {
                 const uint32_t *vertex = level.indices + 3 * size_t(t);
                 Vec3d at[3];
@@ -137,8 +158,10 @@ struct Fit {
                 cancel_point();
                 for (uint32_t x = low[0]; x <= high[0]; ++x) {
                     const double du = x - at[0].x, dv = y - at[0].y;
-                    const double b = (du * f.y - dv * f.x) / area;
-                    const double c = (e.x * dv - e.y * du) / area;
+                    const double at_b = du * f.y - dv * f.x, at_c = e.x * dv - e.y * du;
+                    if (at_b * area < 0 || at_c * area < 0) /* which spares divisions */
+                        continue;
+                    const double b = at_b / area, c = at_c / area;
                     const double share[3] = {1 - b - c, b, c};
                     if (share[0] < 0 || b < 0 || c < 0 || !place.is_coded(x, y))
                         continue;
@@ -233,7 +256,7 @@ LodNormals lod_normals(const gtx_lod_mesh &level, const NormalMaps &maps)
     if ((level.flags & GTX_LOD_FAR) ||
         !gtx_lod_may_have_normals(level.vertex_count, level.triangle_count))
         return out;
-    Fit fit{level, maps, {}};
+    Fit fit{level, maps, {}, {}};
     fit.begin();
     if (!(fit.step() <= 2 * MAX_ERROR)) /* fitting takes a fourth off */
         return out;

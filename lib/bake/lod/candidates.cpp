@@ -16,7 +16,7 @@ bool Simplifier::State::keeps_topology(const Fan &fan, uint32_t from, uint32_t t
 {
     if (start[to + 1] - start[to] > MAX_FAN)
         return false;
-    const int at = int(std::find(fan.ring, fan.ring + fan.ring_count, to) - fan.ring);
+    const int at = index_of(fan.ring, fan.ring_count, to);
     const bool has_before = fan.open ? at > 0 : true, has_after = fan.open ? at < fan.count : true;
     const uint32_t before = has_before ? fan.ring[(at + fan.ring_count - 1) % fan.ring_count]
                                        : NO_VERTEX;

@@ -34,7 +34,7 @@ bool find_fan(const Vector<Triangle> &triangles, const uint32_t *around, size_t 
     }
     int first = 0; /* the one that none leads to, in an open fan */
     for (int i = 0; i < count; ++i)
-        if (std::find(before, before + count, after[i]) == before + count)
+        if (index_of(before, count, after[i]) == count)
             first = i;
     fan.count = 0;
     fan.ring_count = 0;
@@ -44,7 +44,7 @@ bool find_fan(const Vector<Triangle> &triangles, const uint32_t *around, size_t 
         fan.ring[fan.ring_count++] = after[i];
         const uint32_t end = before[i];
         fan.open = end != after[first];
-        i = int(std::find(after, after + count, end) - after);
+        i = index_of(after, count, end);
         if (i == count)
             fan.ring[fan.ring_count++] = end;
         else if (i == first)

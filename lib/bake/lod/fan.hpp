@@ -20,6 +20,15 @@ constexpr int MAX_FAN = 40;
  * level's error (bunny). */
 constexpr double MIN_TURN_COSINE = 0.25;
 
+/* Where a value is among a few; their count where it is not. */
+inline int index_of(const uint32_t *values, int count, uint32_t value)
+{
+    int i = 0;
+    while (i < count && values[i] != value)
+        ++i;
+    return i;
+}
+
 /* The triangles around a vertex in order: `ring` holds their other vertices, one more than there
  * are triangles where the fan is open. Where height fields meet there is no order, and each other
  * vertex is in the ring once. */
@@ -30,7 +39,10 @@ struct Fan {
 
     bool has(uint32_t vertex) const
     {
-        return std::find(ring, ring + ring_count, vertex) != ring + ring_count;
+        bool any = false;
+        for (int i = 0; i < ring_count; ++i)
+            any |= ring[i] == vertex;
+        return any;
     }
 };
 
