@@ -90,7 +90,7 @@ bool FarSearch::is_within(FarCorner &a, FarCorner &b, FarCorner &c)
     if (enough > 0) {
         const double away = distance(middle, enough);
         if (away + beyond <= enough) {
-            tell(near, away + beyond + radius);
+            tell_near(corners, away + radius);
             return true;
         }
         if (is_covered(a, b, c))
@@ -110,26 +110,26 @@ void FarSearch::look(FarCorner &a, FarCorner &b, FarCorner &c)
     cancel_point();
     if (is_covered(a, b, c) || was_covered(a, b, c) || is_covered_by_two(a, b, c))
         return;
+    const Corners corners = {a.at, b.at, c.at};
     const Vec3d middle = (a.at + b.at + c.at) / 3;
-    const double radius = radius_of({a.at, b.at, c.at}, middle);
-    const double enough = most() - radius;
+    const double radius = radius_of(corners, middle), enough = most() - radius;
     if (enough > 0) {
         const double away = distance(middle, enough);
         if (away <= enough) {
-            tell(near, away + radius);
+            tell_near(corners, away + radius);
             return;
         }
         if (away > found)
             farthest = {middle, near};
         found = std::max(found, away);
         if (away + radius <= most()) {
-            tell(near, away + radius);
+            tell_near(corners, away + radius);
             return;
         }
         if (is_covered(a, b, c))
             return;
     } else if (most() * most() < MANY * to.mean_area() &&
-               is_covered_whole({a.at, b.at, c.at})) {
+               is_covered_whole(corners)) {
         return;
     }
     FarCorner x = {(b.at + c.at) / 2}, y = {(c.at + a.at) / 2}, z = {(a.at + b.at) / 2};

@@ -180,6 +180,14 @@ struct FarSearch {
         if (reached)
             reached->tell(triangle, before + away);
     }
+    /* That all of a triangle is at most so near to the nearest, or nearer: its corners tell. */
+    void tell_near(const Corners &c, double most)
+    {
+        double square = 0;
+        for (const Vec3d &p : c)
+            square = std::max(square, nearest.distance2(p));
+        tell(near, std::min(most, std::sqrt(square)) + beyond);
+    }
     /* Whether that triangle is within most() of all that the corners span: distances from a convex
      * set are greatest at corners. */
     bool is_covered(FarCorner &a, FarCorner &b, FarCorner &c)
