@@ -137,7 +137,7 @@ public:
 
 private:
     Placed whole(uint32_t triangle) const;
-    Placed beyond(const Placed &from, int side) const;
+    void place_beyond(const Placed &from, int side, Placed &to) const;
     Edge edge(const Placed &of, int side) const;
     double height_over(const Placed &of, double enough) const;
     bool is_new(uint32_t triangle) const
@@ -167,12 +167,11 @@ Placed Cover::whole(uint32_t triangle) const
 }
 
 /* Its own corner is the only one whose place is not known. */
-Placed Cover::beyond(const Placed &from, int side) const
+void Cover::place_beyond(const Placed &from, int side, Placed &to) const
 {
-    Placed to;
     to.triangle = surface_.beside(from.triangle)[side];
     if (to.triangle == NO_TRIANGLE)
-        return to;
+        return;
     const int next = side == 2 ? 0 : side + 1;
     const uint32_t last = surface_.vertices(from.triangle)[next];
     const std::array<uint32_t, 3> &v = surface_.vertices(to.triangle);
@@ -180,8 +179,7 @@ Placed Cover::beyond(const Placed &from, int side) const
     to.at[first] = from.at[next];
     to.at[(first + 1) % 3] = from.at[side];
     to.known = first;
-    to.at[own] = prism_.place(surface_.corners(to.triangle)[own]);
-    return to;
+    to.at[own] = prism_.place(surface_.corner(to.triangle, own));
 }
 
 Edge Cover::edge(const Placed &of, int side) const
@@ -215,35 +213,39 @@ double Cover::height_over(const Placed &of, double enough) const
 
 Placed Cover::over_middle(uint32_t near) const
 {
-    Placed at = whole(near);
-    for (int n = 0; n < MAX_STEPS && at.triangle != NO_TRIANGLE && at.faces(); ++n) {
+    Placed places[2] = {whole(near), {}};
+    for (int n = 0; n < MAX_STEPS; ++n) {
+        Placed &at = places[n % 2];
+        if (at.triangle == NO_TRIANGLE || !at.faces())
+            break;
         int side = 0;
         while (side < 3 && (side == at.known || edge(at, side).has_middle()))
             ++side;
         if (side == 3)
             return at;
-        at = beyond(at, side);
+        place_beyond(at, side, places[(n + 1) % 2]);
     }
-    at.triangle = NO_TRIANGLE;
-    return at;
+    places[0].triangle = NO_TRIANGLE;
+    return places[0];
 }
 
 bool Cover::spreads(const Placed &middle)
 {
-    Placed left[CoverParts::MAX];
-    size_t slot[CoverParts::MAX], size = 0;
-    left[0] = middle;
-    left[0].known = -1;          /* nothing is said yet of what came there */
-    slot[size++] = add(middle.triangle);
+    Placed placed[CoverParts::MAX];
+    size_t left[CoverParts::MAX], size = 0;
+    placed[0] = middle;
+    placed[0].known = -1;        /* nothing is said yet of what came there */
+    left[size++] = add(middle.triangle);
     while (size) {
-        const Placed at = left[--size];
+        const size_t slot = left[--size];
+        const Placed &at = placed[slot];
         if (!at.faces())
             return false;
         const double more = beyonds_ ? beyonds_->at(at.triangle) : 0;
         const double away = more + height_over(at, TIGHT * most_);
         if (!(away <= most_))
             return false;
-        parts_.away[slot[size]] = away;
+        parts_.away[slot] = away;
         for (int side = 0; side < 3; ++side) {
             if (side == at.known || !edge(at, side).crosses())
                 continue;
@@ -254,8 +256,9 @@ bool Cover::spreads(const Placed &middle)
                 continue;
             if (parts_.count == CoverParts::MAX)
                 return false;
-            slot[size] = add(next);
-            left[size++] = beyond(at, side);
+            left[size] = add(next);
+            place_beyond(at, side, placed[left[size]]);
+            ++size;
         }
     }
     return true;

@@ -53,6 +53,7 @@ public:
 
     size_t size() const { return triangles_.size(); }
     std::array<Vec3d, 3> corners(size_t t) const { return shapes_.corners(t); }
+    const Vec3d &corner(size_t t, int k) const { return positions_[triangles_[t][k]]; }
     const std::array<uint32_t, 3> &vertices(size_t t) const { return triangles_[t]; }
     /* The triangles that go on beyond its edges, the first from corner 0 to corner 1, the same way
      * round; NO_TRIANGLE where none or several do. */
