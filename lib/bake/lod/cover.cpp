@@ -18,10 +18,11 @@ constexpr int MAX_STEPS = 16;
  * beyond that it is worth a closer look. TODO */
 constexpr double TIGHT = 0.25;
 
-/* A place over a triangle: the shares of its corners, of which none is below 0 inside, and the
- * height over its plane. */
+/* A place over a triangle: the shares of its corners, of which none is below 0 inside, a bit of each
+ * that is not above, and the height over its plane. */
 struct Over {
     double share[3], height;
+    unsigned beside;
 };
 
 class Prism {
@@ -40,8 +41,8 @@ public:
     Over place(const Vec3d &point) const
     {
         const Vec3d from = point - origin_;
-        const double x = dot(b_, from), y = dot(c_, from);
-        return {{1 - x - y, x, y}, dot(up_, from)};
+        const double x = dot(b_, from), y = dot(c_, from), z = 1 - x - y;
+        return {{z, x, y}, dot(up_, from), (z <= 0) | (x <= 0) << 1 | (y <= 0) << 2};
     }
 
 private:
@@ -58,14 +59,14 @@ public:
           y_(b_.share[2] - a_.share[2]), first_(y_ * a_.share[1] - x_ * a_.share[2])
     {
     }
-    /* Whether a part of it is over the inside. */
+    /* Whether a part of it is over the inside: one of its ends is, or corners are on both sides. */
     bool crosses() const
     {
+        if ((a_.beside & b_.beside) || !a_.beside || !b_.beside)
+            return !(a_.beside & b_.beside);
         const double second = first_ - y_, third = first_ + x_;
-        const double *a = a_.share, *b = b_.share;
         return !(((first_ >= 0) & (second >= 0) & (third >= 0)) |
-                 ((first_ <= 0) & (second <= 0) & (third <= 0)) | ((a[0] <= 0) & (b[0] <= 0)) |
-                 ((a[1] <= 0) & (b[1] <= 0)) | ((a[2] <= 0) & (b[2] <= 0)));
+                 ((first_ <= 0) & (second <= 0) & (third <= 0)));
     }
     /* Whether the middle is to its left, or on it, of one of the ways. */
     bool has_middle() const
