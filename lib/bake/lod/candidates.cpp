@@ -73,25 +73,34 @@ bool Simplifier::State::keeps_shapes(const Fan &fan, uint32_t from, uint32_t to)
 }
 
 /* What merging a vertex into a neighbour costs. */
+static Choice cost_between(const Quadric &quadric, const Vec3d &from, const Vec3d &place,
+                           uint32_t to, double most)
+{
+    const Vec3d way = place - from;
+    const double cost = quadric.at(place);
+    return cost <= most ? Choice{float(cost + SLIDE * dot(way, way)), to} : Choice();
+}
+
 Choice Simplifier::State::cost_of(uint32_t vertex, uint32_t to, double most) const
 {
-    const Vec3d way = positions[to] - positions[vertex];
-    const double cost = quadrics[vertex].at(positions[to]);
-    return cost <= most ? Choice{float(cost + SLIDE * dot(way, way)), to} : Choice();
+    return cost_between(quadrics[vertex], positions[vertex], positions[to], to, most);
 }
 
 /* What merging a vertex into the cheapest of its neighbours costs, whether it may be or not. In a
  * closed fan each neighbour comes after the vertex once. */
 Choice Simplifier::State::cheapest(uint32_t vertex, double most) const
 {
+    const Quadric quadric = quadrics[vertex];
+    const Vec3d from = positions[vertex];
     Choice least;
     uint64_t after = 0, before = 0;
     for (uint32_t i = start[vertex]; i < start[vertex + 1]; ++i) {
         const Triangle &t = triangles[around[i]];
-        const int k = corner_of(t, vertex);
-        after += t[(k + 1) % 3];
-        before += t[(k + 2) % 3];
-        least = std::min(least, cost_of(vertex, t[(k + 1) % 3], most));
+        const int k = corner_of(t, vertex), next = k == 2 ? 0 : k + 1;
+        const uint32_t to = t[next];
+        after += to;
+        before += t[3 - k - next];
+        least = std::min(least, cost_between(quadric, from, positions[to], to, most));
     }
     for (uint32_t i = start[vertex]; after != before && i < start[vertex + 1]; ++i) {
         const Triangle &t = triangles[around[i]];

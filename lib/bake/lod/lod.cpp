@@ -274,7 +274,9 @@ Vector<LodLevel> make_lod(const LodSource &source, const Maps &maps, unsigned le
     task.begin("lod");
     if (source.triangles.empty() || !levels)
         return {};
-    const Vector<PatchRegion> regions = patch_regions(maps, task);
+    const Vector<PatchRegion> made =
+        source.regions ? Vector<PatchRegion>() : patch_regions(maps, task);
+    const Vector<PatchRegion> &regions = source.regions ? *source.regions : made;
     const double pitch = mean_pitch(maps);
     const Lattice lattice(source.positions, STEP * pitch);
     Vec3d size;

@@ -6,8 +6,13 @@
 #include "bake/lod_normals.hpp"
 
 #include <algorithm>
+#include <memory>
 
 namespace gtx {
+
+namespace baking {
+class PatchRegion;
+}
 
 /* Surface with a patch a triangle, and vertices that patches share, relative to the anchor. */
 struct LodSource {
@@ -17,6 +22,8 @@ struct LodSource {
     size_t model = 0;            /* triangles of the model, that levels are a share of; 0: these */
     Vector<uint8_t> kept;        /* 1: the vertex stays, until triangles may be larger than patches;
                                     or empty */
+    std::shared_ptr<const Vector<baking::PatchRegion>> regions = nullptr; /* where they are known:
+                                    of each patch, where it shows triangles */
 
     Vec3d centre(size_t triangle) const
     {

@@ -3,6 +3,7 @@
 #include "mesh/clean/clean.hpp"
 
 #include <algorithm>
+#include <memory>
 
 namespace gtx {
 
@@ -92,9 +93,10 @@ LodSource lod_source(const Mesh &mesh, const Partition &partition, const Maps &m
     for (uint32_t chart : maps.charts)
         cuts.emplace_back(partition.charts[chart], anchor);
     source.patch = patches_of(partition, maps, cuts, source, task);
-    const Vector<PatchRegion> regions = patch_regions(maps, task);
+    Vector<PatchRegion> regions = patch_regions(maps, task);
     split_at_cuts(partition, maps, cuts, regions, source, task);
     drop_hidden(regions, source, task);
+    source.regions = std::make_shared<const Vector<PatchRegion>>(std::move(regions));
     return source;
 }
 
