@@ -7,9 +7,6 @@
 
 namespace gtx::baking {
 
-/* Of each surface so many points come first, for most of the other triangles need no look once
- * something far is known. Half and double take a few hundredths more time. */
-constexpr size_t FIRST = 2048;
 /* What is farther than so many times the root of the mean square is a spot, and nothing less is
  * told of what has spots. At half a cook takes a fourth more instructions and levels have a tenth
  * more triangles, at double their errors are 40 to 100 % larger (bunny; dragon of 810,080: a fifth,
@@ -18,109 +15,9 @@ constexpr double OUTLYING = 6;
 /* Where more of a finer level's triangles are unsure, all of the source is looked at: boxes around
  * them have most of it, and many have the same. */
 constexpr double MANY_UNSURE = 0.25;
-/* Triangles that are looked at one after another. */
-constexpr size_t CHUNK = 512;
-
-static gtx::Box box_around(const Corners &corners, double beyond)
-{
-    gtx::Box box;
-    for (const Vec3d &p : corners) {
-        box.add(p + Vec3d(beyond, beyond, beyond));
-        box.add(p - Vec3d(beyond, beyond, beyond));
-    }
-    return box;
-}
-
-/* Lists that were made in parts, one after the other. */
-template <class Item> static Vector<Item> joined(const Vector<Vector<Item>> &parts)
-{
-    Vector<Item> all;
-    for (const Vector<Item> &part : parts)
-        all.insert(all.end(), part.begin(), part.end());
-    return all;
-}
-
-/* Which triangles touch one of the boxes. */
-static Vector<uint32_t> touching(const SortedSurface &surface, const Vector<gtx::Box> &boxes,
-                                 Task &task)
-{
-    Vector<Vector<uint32_t>> found((boxes.size() + CHUNK - 1) / CHUNK);
-    task.parallel(found.size(), [&](size_t n) {
-        for (size_t i = n * CHUNK; i < std::min(boxes.size(), (n + 1) * CHUNK); ++i)
-            surface.tree().visit_around(NO_PATCH, [&](const gtx::Box &box) {
-                return !box.touches(boxes[i]);
-            }, [&](uint32_t t) {
-                if (box_around(surface.corners(t), 0).touches(boxes[i]))
-                    found[n].push_back(t);
-            });
-    }, 1, 1);
-    Vector<uint32_t> all = joined(found);
-    std::sort(all.begin(), all.end());
-    all.erase(std::unique(all.begin(), all.end()), all.end());
-    return all;
-}
-
-/* In how many parts triangles are looked at, whatever the number of threads. */
-static size_t parts_of(const SortedSurface &from, const Few &few)
-{
-    return few ? (few->size() + CHUNK - 1) / CHUNK : from.tree().parts();
-}
-
-/* `look(part, search, t)` for each triangle of few, or of all that are not in a box that is near
- * enough. */
-template <class Look>
-static void look_at(const SortedSurface &from, const Few &few, const FarSearch &start,
-                    const Look &look, Task &task)
-{
-    task.parallel(parts_of(from, few), [&](size_t part) {
-        FarSearch search = start;
-        if (few)
-            for (size_t i = part * CHUNK; i < std::min(few->size(), (part + 1) * CHUNK); ++i)
-                look(part, search, (*few)[i]);
-        else
-            from.tree().visit(part, [&](const gtx::Box &box) { return search.is_covered(box); },
-                              [&](uint32_t t) { look(part, search, t); });
-    }, 1, 1);
-}
-
-/* `counts(t)`: whether triangle t of `from` is to be near. `reached`, or null, is told of those. */
-template <class Counts>
-static double greatest(const SortedSurface &from, const Few &few, const Counts &counts,
-                       const FarSearch &start, Reached *reached, Task &task)
-{
-    Vector<double> found(parts_of(from, few), start.found);
-    look_at(from, few, start, [&](size_t part, FarSearch &search, uint32_t t) {
-        if (!counts(t))
-            return;
-        search.reach = 0;
-        search.look(from.corners(t));
-        found[part] = search.found;
-        if (reached)
-            reached->set(t, search.reach);
-    }, task);
-    return found.empty() ? start.found : *std::max_element(found.begin(), found.end());
-}
-
-/* `add(t, place)` for each triangle that is somewhere farther than start.free. */
-template <class Counts, class Add>
-static Vector<FarPoint> all_far(const SortedSurface &from, const Few &few, const Counts &counts,
-                                const FarSearch &start, Reached *reached, const Add &add,
-                                Task &task)
-{
-    Vector<Vector<FarPoint>> found(parts_of(from, few));
-    look_at(from, few, start, [&](size_t part, FarSearch &search, uint32_t t) {
-        if (!counts(t))
-            return;
-        search.reach = 0;
-        const FarPlace place = search.find_far(from.corners(t));
-        if (reached)
-            reached->set(t, search.reach);
-        if (place.away > 0)
-            found[part].push_back(add(t, place));
-    }, task);
-    return joined(found);
-}
-
+/* Of each surface so many points come first, for most of the other triangles need no look once
+ * something far is known. Half and double take a few hundredths more time. */
+constexpr size_t FIRST = 2048;
 /* The first points: their greatest distance, and the root of the mean square. */
 template <class Counts>
 static Strayed sample(const SortedSurface &from, const Counts &counts, const FarSearch &start,
@@ -157,7 +54,7 @@ BoundSource::BoundSource(const LodSource &source, Task &task)
 
 bool BoundSource::is_shown(uint32_t triangle, double speck) const
 {
-    return parts_[surface_.given(triangle)] > speck || largest_part_ <= speck;
+    return parts_[surface_.given(triangle)] > speck || is_speck(speck);
 }
 
 static Vector<uint32_t> stored_triangles(const LevelMesh &mesh)
@@ -222,7 +119,7 @@ void LevelBound::begin(std::unique_ptr<const LevelSurface> level)
  * one of the finer level that is near enough to this one: distances add up. */
 Few LevelBound::few_of_source(double within)
 {
-    if (!finer_)
+    if (!finer_ || source_.is_speck(speck_)) /* all is shown again */
         return {};
     const SortedSurface &finer = finer_->level->surface;
     Vector<Vector<gtx::Box>> boxes(finer.tree().parts());
@@ -261,9 +158,7 @@ Few LevelBound::few_of_level(double within)
                 few[part].push_back(t);
         });
     }, 1, 1);
-    Vector<uint32_t> all = joined(few);
-    std::sort(all.begin(), all.end());
-    return all;
+    return joined(few);
 }
 
 Spots LevelBound::spots(double least)

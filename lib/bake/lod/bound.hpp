@@ -1,11 +1,9 @@
 /* How far an LOD mesh strays from the surface that it was made of. */
 #pragma once
 
-#include "bake/lod/far_search.hpp"
-#include "bake/lod/spots.hpp"
+#include "bake/lod/looks.hpp"
 
 #include <memory>
-#include <optional>
 
 namespace gtx::baking {
 
@@ -31,6 +29,8 @@ public:
 
     /* Parts that are no longer than `speck` need not be in a level. */
     bool is_shown(uint32_t triangle, double speck) const;
+    /* Whether none of it is longer. */
+    bool is_speck(double speck) const { return largest_part_ <= speck; }
     uint32_t patch_of(uint32_t triangle) const { return patch_[surface_.given(triangle)]; }
     const SortedSurface &surface() const { return surface_; }
 
@@ -57,9 +57,6 @@ struct BoundedLevel {
     std::unique_ptr<const LevelSurface> level;
     std::unique_ptr<Reached> from_source, to_source;
 };
-
-/* Triangles to look at, ascending; none: all. */
-using Few = std::optional<Vector<uint32_t>>;
 
 /* Bounds a level while it is mended. */
 class LevelBound {

@@ -14,12 +14,12 @@ constexpr double MIN_SINE = 1e-6;
 /* From a triangle close by to the one over the middle: a limit. */
 constexpr int MAX_STEPS = 16;
 
-/* Of what may be the distance to a triangle that lies over another its corners tell so much at most:
- * beyond that it is worth a closer look. TODO */
+/* Corners of a triangle over another tell how far it is from it where that is at most this share of
+ * what is allowed; else a closer look does. TUNED */
 constexpr double TIGHT = 0.25;
 
-/* A place over a triangle: the shares of its corners, of which none is below 0 inside, a bit of each
- * that is not above, and the height over its plane. */
+/* A place over a triangle: the shares of its corners, of which none is below 0 inside, the height
+ * over its plane, and a bit of each share that is not above 0. */
 struct Over {
     double share[3], height;
     unsigned beside;
@@ -42,7 +42,8 @@ public:
     {
         const Vec3d from = point - origin_;
         const double x = dot(b_, from), y = dot(c_, from), z = 1 - x - y;
-        return {{z, x, y}, dot(up_, from), (z <= 0) | (x <= 0) << 1 | (y <= 0) << 2};
+        return {{z, x, y}, dot(up_, from),
+                unsigned((z <= 0) | (x <= 0) << 1 | (y <= 0) << 2)};
     }
 
 private:

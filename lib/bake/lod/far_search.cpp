@@ -73,9 +73,8 @@ bool FarSearch::is_covered_by_two(const FarCorner &a, const FarCorner &b, const 
     }
     tell(near, std::sqrt(here) + beyond);
     tell(other, std::sqrt(there) + more);
-    if (inside[0][side] + inside[1][side] + inside[2][side] < 0) { /* more of it is there */
+    if (inside[0][side] + inside[1][side] + inside[2][side] < 0) /* more of it is there */
         remember(std::exchange(near, other));
-    }
     return true;
 }
 
