@@ -13,7 +13,8 @@ namespace gtx::baking {
  * 9 %, 3 to 60). */
 constexpr double OUTLYING = 6;
 /* Where more of a finer level's triangles are unsure, all of the source is looked at: boxes around
- * them have most of it, and many have the same. */
+ * them have most of it, and many have the same. A limit: without it the first far level of the
+ * dragon of 810,080 triangles takes five times as long. */
 constexpr double MANY_UNSURE = 0.25;
 /* Of each surface so many points come first, for most of the other triangles need no look once
  * something far is known. Half and double take a few hundredths more time. */

@@ -15,8 +15,9 @@ constexpr double MIN_SINE = 1e-6;
 constexpr int MAX_STEPS = 16;
 
 /* Corners of a triangle over another tell how far it is from it where that is at most this share of
- * what is allowed; else a closer look does. TUNED */
-constexpr double TIGHT = 0.25;
+ * what is allowed; else a closer look does. Dragon of 810,080 triangles: at half 47 % more closer
+ * looks; at double coarser levels are told less, and 17 % more triangles are looked at. */
+constexpr double TIGHT = 0.5;
 
 /* A place over a triangle: the shares of its corners, of which none is below 0 inside, the height
  * over its plane, and a bit of each share that is not above 0. */

@@ -18,7 +18,7 @@ constexpr double MAX_OUTSIDE = 0.5;
 /* Points of the surface that a vertex of the first level draws out to, of those that it stands
  * for. */
 constexpr uint32_t MAX_POINTS = 6;
-/* Of the points between the first level's vertices one of so many tells later levels too. */
+/* Of the points between a level's vertices one of so many tells the next too. */
 constexpr uint32_t LATER_POINTS = 4;
 
 /* Moves a vertex, less far where its triangles need it. */
@@ -67,8 +67,8 @@ void Simplifier::State::find_members(Vector<uint32_t> &first, Vector<Vec3d> &mem
             members[next[vertex[p]]++] = points[p];
 }
 
-/* The next levels are told of the surface by the vertices of the first and by some of the points
- * between: they are many more than their own still. find_members() has made merged[] one step. */
+/* The next level is told of the surface by the vertices of this one and by some of the points
+ * between: they are many more than its own still. find_members() has made merged[] one step. */
 void Simplifier::State::keep_points()
 {
     first_points = false;
