@@ -34,24 +34,30 @@ template <class Item> Vector<Item> joined(const Vector<Vector<Item>> &parts)
     return all;
 }
 
-/* Which triangles touch one of the boxes. */
+/* Which triangles touch one of the boxes, ascending. */
 inline Vector<uint32_t> touching(const SortedSurface &surface, const Vector<gtx::Box> &boxes,
                                  Task &task)
 {
-    Vector<Vector<uint32_t>> found((boxes.size() + CHUNK - 1) / CHUNK);
-    task.parallel(found.size(), [&](size_t n) {
-        for (size_t i = n * CHUNK; i < std::min(boxes.size(), (n + 1) * CHUNK); ++i)
-            surface.tree().visit_around(NO_PATCH, [&](const gtx::Box &box) {
-                return !box.touches(boxes[i]);
-            }, [&](uint32_t t) {
-                if (box_around(surface.corners(t), 0).touches(boxes[i]))
-                    found[n].push_back(t);
-            });
+    Vector<Vector<uint32_t>> found(surface.tree().parts());
+    task.parallel(found.size(), [&](size_t part) {
+        Vector<gtx::Box> near;
+        for (const gtx::Box &box : boxes)
+            if (box.touches(surface.tree().box(part)))
+                near.push_back(box);
+        const auto touches = [&](const gtx::Box &box) {
+            return std::any_of(near.begin(), near.end(),
+                               [&](const gtx::Box &b) { return b.touches(box); });
+        };
+        surface.tree().visit(part, [&](const gtx::Box &box) { return !touches(box); },
+                             [&](uint32_t t) {
+            gtx::Box box;
+            for (const Vec3d &p : surface.corners(t))
+                box.add(p);
+            if (touches(box))
+                found[part].push_back(t);
+        });
     }, 1, 1);
-    Vector<uint32_t> all = joined(found);
-    std::sort(all.begin(), all.end());
-    all.erase(std::unique(all.begin(), all.end()), all.end());
-    return all;
+    return joined(found);
 }
 
 /* In how many parts triangles are looked at, whatever the number of threads. */
