@@ -146,24 +146,21 @@ uint32_t gtx_blocks_seen(const gtx_frustum *f, const gtx_model *model, uint32_t 
     return seen;
 }
 
-gtx_cover gtx_cover_of(const gtx_frustum *f, const gtx_model *model, uint32_t patch, bool tiles,
+gtx_cover gtx_cover_of(const gtx_frustum *f, const gtx_model *model, uint32_t patch, double most,
                        const gtx_occlusion *occlusion, uint32_t *shown)
 {
     const patch_view v = view_of(f, model, patch);
     const gtx_slab *slabs = model->slabs + model->first_slab[patch];
     const uint32_t count = model->first_slab[patch + 1] - model->first_slab[patch];
     gtx_patch_view over = {0};
-    gtx_cover c = {0, 0, 0, false};
+    gtx_cover c = {0, 0, false};
     if (occlusion)
         over = gtx_occlusion_view(occlusion, model->records[patch]);
     for (uint32_t i = 0; i < count; ++i) {
         if (!is_seen(&v, &slabs[i]) ||
             (occlusion && gtx_is_slab_hidden(occlusion, &over, &slabs[i])))
             continue;
-        const double pixels = pixels_of(&v, &slabs[i]);
-        const double side = tiles ? sqrt(pixels) + GTX_TILE : 0;
-        c.pixels += pixels;
-        c.cast += tiles ? side * side : pixels;
+        c.pixels += lesser(pixels_of(&v, &slabs[i]), most);
         shown[c.blocks++] = i;
     }
     return c;

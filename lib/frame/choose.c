@@ -8,14 +8,15 @@
 #include <math.h>
 
 /* The host's costs, or nanoseconds measured with llvmpipe on two cores, in the forward pass of a
- * dragon of 810,080 triangles in 526 patches: cast in fragments, and by tiles. Other passes cost
- * less, but must choose the same to get the same depth. That of a grid's triangle, found and drawn:
- * a fit of 36 random views of that dragon and 48 of a bunny (gtx bench --random --methods grid),
- * off by a tenth in the mean. On a GPU (H200, whose graphics are those of four multiprocessors),
- * by gtx bench of the dragon and the bunny at two sizes: polygons are what it is made for. */
+ * dragon of 810,080 triangles in 654 patches: cast in fragments, and by tiles. Other passes cost
+ * less, but must choose the same to get the same depth. Those of casting by tiles, with the share
+ * of pixels that mix.c takes to show, and of a grid's triangle, found and drawn, and pixel: fits of
+ * 96 random views of that dragon and 60 of a bunny (gtx bench --random --methods cast,grid). On a
+ * GPU (H200, whose graphics are those of four multiprocessors), by gtx bench of the dragon and the
+ * bunny at two sizes: polygons are what it is made for. */
 static const gtx_costs *costs_of(const gtx_draw_call *draw)
 {
-    static const gtx_costs measured[2] = {{100, 25, 15000, 160, 460}, {100, 25, 5500, 75, 460}};
+    static const gtx_costs measured[2] = {{100, 25, 15000, 160, 370}, {200, 25, 12000, 120, 370}};
     static const gtx_costs on_gpu = {2, 1, 4000, 17, 0};
     const gtx_costs *told = &draw->planner->costs;
     const bool none = told->lod_triangle == 0 && told->lod_pixel == 0 &&
@@ -107,8 +108,8 @@ uint32_t gtx_levels_cast(const gtx_draw_call *draw, const gtx_model *model)
     return lods->level_count;
 }
 
-/* A pixel of a grid beside one of an LOD mesh, of the same fit: most are lit at corners. */
-static const double grid_pixel = 0.25;
+/* A pixel of a grid beside one of an LOD mesh, of the same fit: many are those of two triangles. */
+static const double grid_pixel = 1.2;
 
 double gtx_grid_cost(const gtx_draw_call *draw, uint32_t triangles, double pixels)
 {

@@ -9,7 +9,6 @@
 /* What a patch takes in the picture. */
 typedef struct gtx_cover {
     double pixels;            /* of its blocks that are drawn */
-    double cast;              /* the same, or of the tiles that rays look them up in */
     uint32_t blocks;
     bool grid;                /* it is drawn by a grid, or not at all */
 } gtx_cover;
@@ -19,8 +18,8 @@ typedef struct gtx_cover {
 uint32_t gtx_blocks_seen(const gtx_frustum *f, const gtx_model *model, uint32_t patch,
                          uint32_t level, uint32_t *shown);
 /* blocks.c: looks for the blocks of a patch that are in view, may face the eye and, where
- * `occlusion` is given, are not hidden. `shown` has room for all. */
-gtx_cover gtx_cover_of(const gtx_frustum *f, const gtx_model *model, uint32_t patch, bool tiles,
+ * `occlusion` is given, are not hidden. `shown` has room for all; none covers more than `most`. */
+gtx_cover gtx_cover_of(const gtx_frustum *f, const gtx_model *model, uint32_t patch, double most,
                        const gtx_occlusion *occlusion, uint32_t *shown);
 /* Adds the blocks that it found to the planner's grids, as long as that takes less than `most`
  * triangles. False if it gave up, or without memory. */
