@@ -45,6 +45,36 @@ static void normals_are_those_of_the_source(void **)
     assert_true(worst > 0.9998);
 }
 
+/* A floor, a wall and a roof, each as even as can be. */
+static void walls_are_shaded_as_walls(void **)
+{
+    constexpr unsigned N = 41, BELOW = 20; /* columns; those of the floor */
+    Mesh mesh = shapes::field(N, [](double u, double v) {
+        const bool above = u * N > BELOW + 0.5;
+        return Vec3d(std::floor(u * N + 0.5) - above, v * (N - 1), above ? 30 : 0);
+    });
+    for (size_t t = 0; t < mesh.triangle_count(); ++t)
+        for (size_t k = 3 * t; k < 3 * t + 3; ++k)
+            mesh.normals[k] = Vec3f(normalize(mesh.area_vector(t)));
+    Partition partition = shapes::split(mesh, shapes::all_in_one(), N - 1);
+    partition.charts[0].frame = shapes::frame_along(mesh, partition.charts[0].triangles, {0, 0, 1});
+    Maps maps = bake_valid(mesh, partition);
+    size_t beside = 0;
+    each_texel(maps, [&](const gtx_patch &patch, const Vec3d &p, double trim, size_t at) {
+        if (patch.axis_z[2] < 0.9f || trim > 0) /* the wall's own */
+            return;
+        float frame[3][3], n[3];
+        gtx_normal_frame(&patch, frame);
+        gtx_decode_normal(&maps.normal[0][2 * at], n);
+        const double west = -(n[0] * frame[0][0] + n[1] * frame[1][0] + n[2] * frame[2][0]);
+        const double away = std::fabs(p.x - BELOW);
+        beside += west > 0.7;
+        assert_true(away < 1.1 * partition.pitch || west < 0.01);
+    });
+    const double rows = (N - 1) / partition.pitch; /* one above and one below */
+    assert_in_range(beside, 2 * (rows - 2), 2 * rows);
+}
+
 static void the_whole_core_is_shown(void **)
 {
     Mesh mesh = shapes::ball(32, shapes::bumps);
@@ -251,6 +281,7 @@ int main()
     const CMUnitTest tests[] = {
         cmocka_unit_test(a_bumpy_ball_lies_on_its_surface),
         cmocka_unit_test(normals_are_those_of_the_source),
+        cmocka_unit_test(walls_are_shaded_as_walls),
         cmocka_unit_test(the_whole_core_is_shown),
         cmocka_unit_test(any_thread_count_gives_the_same_bytes),
         cmocka_unit_test(far_away_keeps_its_precision),

@@ -156,7 +156,9 @@ static PatchMaps encode_field(const Job &job, const Chart &chart, const ChartFie
     const Vector<Ending> ending = find_endings(job, s, maps.creases);
     quantise(s, ending, crop, low, job.options.height_bits, maps);
     measure_patch(job.options.height_bits, maps);
-    build_mips(shade_texels(job, s, crop, maps.height), job.options.mips, job.needs, maps);
+    Shades shades = shade_texels(job, s, crop, maps.height);
+    shade_walls(maps, job.options.height_bits, shades);
+    build_mips(std::move(shades), job.options.mips, job.needs, maps);
     return maps;
 }
 

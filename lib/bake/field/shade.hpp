@@ -32,6 +32,9 @@ struct Crop {
 Shades shade_texels(const Job &job, const ChartField &field, const Crop &crop,
                     const Vector<uint16_t> &height);
 
+/* Gives texels beside walls the mean normal of what their cells show. */
+void shade_walls(const PatchMaps &maps, unsigned height_bits, Shades &shades);
+
 /* Fills empty texels ring by ring with the mean of the neighbours that the ring before had. */
 void dilate(Shades &shades, unsigned rings);
 
