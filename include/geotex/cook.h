@@ -257,7 +257,7 @@ typedef struct gtx_compare_desc {
 
 /* Figures that a build may put limits on; format/measures.md defines each. */
 typedef struct gtx_compare_result {
-    uint64_t hole_pixels, wall_pixels, surface_pixels;
+    uint64_t hole_pixels, wall_pixels, turned_pixels, surface_pixels;
     double silhouette_iou, silhouette_iou_min;
     double forward_rms;           /* distance from the source to the asset, and from the asset to
                                      the source, as fractions of the source's bounding-box

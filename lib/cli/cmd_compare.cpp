@@ -11,7 +11,8 @@ enum { MAX_FILES = 4097 };
 
 static gtx_compare_desc desc;
 static bool as_json, any_model;
-static double tile_error, max_holes = -1, max_walls = -1, min_iou = -1, max_rms = -1;
+static double tile_error, max_holes = -1, max_walls = -1, max_turned = -1;
+static double min_iou = -1, max_rms = -1;
 
 static const option options[] = {
     {"json", 0, OPTION_FLAG, &as_json, nullptr, "print the whole report as JSON", 0, 0},
@@ -37,6 +38,7 @@ static const option options[] = {
     PROGRESS_OPTION,
     {"max-holes", 0, OPTION_NUMBER, &max_holes, "N", "exit 7 above N hole pixels", 0, 1e18},
     {"max-walls", 0, OPTION_NUMBER, &max_walls, "N", "exit 7 above N wall pixels", 0, 1e18},
+    {"max-turned", 0, OPTION_NUMBER, &max_turned, "N", "exit 7 above N turned pixels", 0, 1e18},
     {"min-iou", 0, OPTION_NUMBER, &min_iou, "X", "exit 7 below this silhouette IoU", 0, 1},
     {"max-rms", 0, OPTION_NUMBER, &max_rms, "X",
      "exit 7 above this RMS distance of the source from the asset, in bounding-box diagonals",
@@ -69,6 +71,9 @@ static int judge(const char *asset, const gtx_compare_result *result)
     if (max_walls >= 0 && double(result->wall_pixels) > max_walls)
         code = differs(asset, "wall pixels", double(result->wall_pixels), "above --max-walls",
                        max_walls);
+    if (max_turned >= 0 && double(result->turned_pixels) > max_turned)
+        code = differs(asset, "turned pixels", double(result->turned_pixels),
+                       "above --max-turned", max_turned);
     if (min_iou >= 0 && result->silhouette_iou < min_iou)
         code = differs(asset, "silhouette IoU", result->silhouette_iou, "below --min-iou",
                        min_iou);
@@ -83,6 +88,7 @@ static void print_figures(const gtx_compare_result &result)
     printf("hole pixels     %" PRIu64 " of %" PRIu64 "\n", result.hole_pixels,
            result.surface_pixels);
     printf("wall pixels     %" PRIu64 "\n", result.wall_pixels);
+    printf("turned pixels   %" PRIu64 "\n", result.turned_pixels);
     printf("silhouette IoU  %.5f (worst view %.5f)\n", result.silhouette_iou,
            result.silhouette_iou_min);
     printf("forward RMS     %.5f %% of the diagonal\n", 100 * result.forward_rms);

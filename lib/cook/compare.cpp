@@ -39,6 +39,7 @@ static void write_pixels(Json &json, const CompareReport &report)
     gtx_json_integer(&json, "hole_pixels", report.hole_pixels);
     gtx_json_integer(&json, "wall_pixels", report.wall_pixels);
     gtx_json_integer(&json, "leak_pixels", report.leak_pixels);
+    gtx_json_integer(&json, "turned_pixels", report.turned_pixels);
     gtx_json_begin_array(&json, "levels");
     for (const LevelReport &level : report.levels) {
         gtx_json_begin_object(&json, nullptr);
@@ -95,11 +96,12 @@ static std::string write_report(const CompareReport &report, const Vector<Warnin
     write_warnings(json, warnings);
     gtx_json_end_object(&json);
     check_written(json);
-    char line[160];
+    char line[200];
     snprintf(line, sizeof line,
-             "%llu hole and %llu wall pixels, of %llu, silhouette IoU %.5f, forward RMS %.3g",
+             "%llu hole, %llu wall and %llu turned pixels, of %llu, silhouette IoU %.5f, forward "
+             "RMS %.3g",
              (unsigned long long)report.hole_pixels, (unsigned long long)report.wall_pixels,
-             (unsigned long long)report.surface_pixels, report.silhouette_iou,
+             (unsigned long long)report.turned_pixels, (unsigned long long)report.surface_pixels, report.silhouette_iou,
              report.error.forward.rms);
     return line;
 }
@@ -156,8 +158,8 @@ void compare_models(const ShownAt &shown, uint32_t levels, Models &models,
         Report(json, summary, models.sources, task.warnings).hand_over(report);
     }
     if (result)
-        *result = {measured.hole_pixels, measured.wall_pixels, measured.surface_pixels,
-                   measured.silhouette_iou, measured.silhouette_iou_min,
+        *result = {measured.hole_pixels, measured.wall_pixels, measured.turned_pixels,
+                   measured.surface_pixels, measured.silhouette_iou, measured.silhouette_iou_min,
                    measured.error.forward.rms, measured.error.reverse.max,
                    measured.seams.p99_steps, measured.seams.max_steps};
 }

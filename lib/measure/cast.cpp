@@ -64,6 +64,18 @@ double AssetView::height_step(const ViewHit &hit) const
     return gtx_height_step(&patch_of(hit), parts_[hit.asset].info.height_bits);
 }
 
+double AssetView::texel(const ViewHit &hit) const
+{
+    const gtx_patch_frame frame =
+        gtx_patch_frame_of(&patch_of(hit), parts_[hit.asset].info.height_bits);
+    double longest = 0;
+    for (int a = 0; a < 2; ++a) {
+        const Vec3d side(frame.axis[a][0], frame.axis[a][1], frame.axis[a][2]);
+        longest = std::max(longest, length(side));
+    }
+    return longest;
+}
+
 namespace {
 
 /* The pixels that a box may be seen at, and how near, a margin for rounding included. */
@@ -159,12 +171,20 @@ void AssetView::cast_row(const View &view, uint32_t j, Vector<ViewHit> &hits,
     }
 }
 
-Fragment AssetView::fragment(const ViewHit &hit) const
+/* As the shaders do it (shaders/geotex_view.glsl: gtx_from_behind). */
+static Vec3d from_behind(const Vec3d &normal, const Vec3d &ray)
+{
+    constexpr double RIM = 0.1;
+    const double away = std::max(dot(normal, ray), 0.), t = std::min(away / RIM, 1.);
+    const double turned = t * t * (3 - 2 * t);
+    return (normal - ray * (2 * away)) * (1 - turned) - normal * turned;
+}
+
+Fragment AssetView::fragment(const ViewHit &hit, const View &view) const
 {
     const Part &part = parts_[hit.asset];
-    double side = hit.back ? -1 : 1;
-    Fragment fragment = {Vec3d(hit.normal[0], hit.normal[1], hit.normal[2]) * side,
-                         {255, 255, 255}};
+    const Vec3d normal(hit.normal[0], hit.normal[1], hit.normal[2]);
+    Fragment fragment = {hit.back ? from_behind(normal, -view.toward) : normal, {255, 255, 255}};
     if (!part.color)
         return fragment;
     const gtx_patch &patch = patch_of(hit);

@@ -40,8 +40,10 @@ public:
 
     /* The length of one step of the height codes of the patch that was hit. */
     double height_step(const ViewHit &hit) const;
-    /* Normal and colour at a hit. */
-    Fragment fragment(const ViewHit &hit) const;
+    /* The longer side of a texel of the finest level of that patch. */
+    double texel(const ViewHit &hit) const;
+    /* Normal and colour at a hit, as the view shows them. */
+    Fragment fragment(const ViewHit &hit, const View &view) const;
 
 private:
     struct Destroy {

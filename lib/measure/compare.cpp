@@ -17,6 +17,7 @@ static void summarise(const Vector<Figures> &figures, const Distribution &depths
 {
     double depth_square = 0, angle_sum = 0, color_square = 0, pixels = 0;
     for (const Figures &f : figures) {
+        report.turned_pixels += f.turned;
         depth_square += f.depth_square;
         angle_sum += f.angle_sum;
         color_square += f.color_square;

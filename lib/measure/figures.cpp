@@ -7,7 +7,7 @@ namespace gtx {
 
 /* Tolerances: pixels, height steps and fractions of the diagonal (format/measures.md). */
 static const double HOLE_PIXELS = 2, HOLE_STEPS = 4, HOLE_DIAGONAL = 0.001, FLAT_DIAGONAL = 0.01;
-static const double WALL_DIAGONAL = 0.01;
+static const double WALL_DIAGONAL = 0.01, TURNED_DEGREES = 45;
 
 namespace {
 
@@ -19,13 +19,13 @@ struct Around {
 };
 
 /* A pixel where the asset is deeper, or nearer, than what all nine show of the source by more than
- * it may. */
+ * it may, or faces another way than the source does there. */
 struct Suspect {
     uint32_t i, j;
     ViewHit hit;
-    bool wall;
-    double off;                  /* from the nearest or the deepest of the nine */
-    double tolerance;
+    Fault kind;
+    double off;                  /* from the nearest or the deepest of the nine; degrees */
+    double tolerance;            /* of depths */
 };
 
 /* One view at one level while it is measured. */
@@ -42,7 +42,12 @@ struct Look {
     void pixel(uint32_t i, uint32_t j, const ViewHit &hit);
     void faults();
     void fault(const Suspect &suspect);
-    void appearance(uint32_t i, uint32_t j, const ViewHit &hit, bool depths_agree);
+    bool is_excused(const Suspect &suspect, const MeshImage &close) const;
+    bool faces_alike(const Vec3d &normal, const View &shown, const MeshImage &of, uint32_t i,
+                     uint32_t j) const;
+    bool shows_as_turned(const Suspect &suspect, const MeshImage &close) const;
+    void appearance(uint32_t i, uint32_t j, const ViewHit &hit, double depth_error,
+                    double tolerance);
     void leaks(const Vector<Crossing> &crossings);
 };
 
@@ -90,12 +95,12 @@ static double degrees_between(const Vec3d &a, const Vec3d &b)
 
 void Look::fault(const Suspect &s)
 {
-    ++(s.wall ? out.walls : out.holes);
+    ++(s.kind == Fault::hole ? out.holes : s.kind == Fault::wall ? out.walls : out.turned);
     if (!scene.list_faults)
         return;
     const size_t at = size_t(s.j) * view.size + s.i;
-    const double depth = s.wall ? double(s.hit.t) : image.depth[at];
-    out.faults.push_back({s.wall, scene.level, view.size, view_index, s.i, s.j, image.triangle[at],
+    const double depth = s.kind == Fault::hole ? image.depth[at] : double(s.hit.t);
+    out.faults.push_back({s.kind, scene.level, view.size, view_index, s.i, s.j, image.triangle[at],
                           s.hit.patch, s.hit.asset, s.off,
                           view.at(s.i, s.j) - view.toward * depth});
 }
@@ -117,6 +122,40 @@ static bool shows_as_near(const MeshImage &close, const Suspect &s)
                        [&](float depth) { return depth <= s.hit.t + s.tolerance; });
 }
 
+bool Look::faces_alike(const Vec3d &normal, const View &shown, const MeshImage &of, uint32_t i,
+                       uint32_t j) const
+{
+    return of.triangle[size_t(j) * shown.size + i] != NO_HIT &&
+           degrees_between(fragment_at(all.mesh, shown, of, i, j).normal, normal) <= TURNED_DEGREES;
+}
+
+/* Whether the source faces as the asset does anywhere within a texel, or a pixel. */
+bool Look::shows_as_turned(const Suspect &s, const MeshImage &close) const
+{
+    const Vec3d normal = asset.fragment(s.hit, view).normal;
+    const View closer = close_view(view, s.i, s.j);
+    for (uint32_t b = 0; b < CLOSE_SIDE; ++b)
+        for (uint32_t a = 0; a < CLOSE_SIDE; ++a)
+            if (faces_alike(normal, closer, close, a, b))
+                return true;
+    const uint32_t reach = uint32_t(std::min(asset.texel(s.hit) / view.pixel, double(view.size)));
+    for (uint32_t b = s.j - std::min(s.j, reach); b < std::min(s.j + reach + 1, view.size); ++b)
+        for (uint32_t a = s.i - std::min(s.i, reach); a < std::min(s.i + reach + 1, view.size); ++a)
+            if (faces_alike(normal, view, image, a, b))
+                return true;
+    return false;
+}
+
+bool Look::is_excused(const Suspect &s, const MeshImage &close) const
+{
+    switch (s.kind) {
+    case Fault::hole: return shows_as_deep(close, s);
+    case Fault::wall: return shows_as_near(close, s);
+    case Fault::turned: return shows_as_turned(s, close);
+    }
+    return false;
+}
+
 /* Suspects are looked at more closely, so many at a time that their images take little room. */
 void Look::faults()
 {
@@ -126,16 +165,18 @@ void Look::faults()
         Vector<ClosePixel> pixels;
         for (size_t k = first; k < end; ++k) {
             const Suspect &s = suspects[k];
-            pixels.push_back({s.i, s.j, s.wall ? double(s.hit.t) + s.tolerance : INFINITY});
+            pixels.push_back({s.i, s.j, s.kind == Fault::hole ? double(INFINITY)
+                                                              : double(s.hit.t) + s.tolerance});
         }
         const Vector<MeshImage> close = rasterise_close(all.mesh, view, pixels);
         for (size_t k = first; k < end; ++k)
-            if (!(suspects[k].wall ? shows_as_near : shows_as_deep)(close[k - first], suspects[k]))
+            if (!is_excused(suspects[k], close[k - first]))
                 fault(suspects[k]);
     }
 }
 
-void Look::appearance(uint32_t i, uint32_t j, const ViewHit &hit, bool depths_agree)
+void Look::appearance(uint32_t i, uint32_t j, const ViewHit &hit, double depth_error,
+                      double tolerance)
 {
     bool in_source = image.triangle[size_t(j) * view.size + i] != NO_HIT;
     bool in_asset = hit.patch != NO_HIT;
@@ -143,11 +184,15 @@ void Look::appearance(uint32_t i, uint32_t j, const ViewHit &hit, bool depths_ag
     if (in_source)
         source = fragment_at(all.mesh, view, image, i, j);
     if (in_asset)
-        seen = asset.fragment(hit);
+        seen = asset.fragment(hit, view);
     out.color_square += color_difference(in_source ? &source : nullptr, in_asset ? &seen : nullptr,
                                          view.toward);
-    if (depths_agree)
-        out.angle.push_back(float(degrees_between(source.normal, seen.normal)));
+    if (!in_source || !in_asset || std::abs(depth_error) > tolerance)
+        return;
+    const double angle = degrees_between(source.normal, seen.normal);
+    out.angle.push_back(float(angle));
+    if (angle > TURNED_DEGREES)
+        suspects.push_back({i, j, hit, Fault::turned, angle, tolerance});
 }
 
 void Look::pixel(uint32_t i, uint32_t j, const ViewHit &hit)
@@ -168,16 +213,16 @@ void Look::pixel(uint32_t i, uint32_t j, const ViewHit &hit)
     if (around.surface) {
         ++out.surface;
         if (!in_asset || hit.t - around.deepest > tolerance)
-            suspects.push_back({i, j, hit, false, hit.t - around.deepest, tolerance});
+            suspects.push_back({i, j, hit, Fault::hole, hit.t - around.deepest, tolerance});
     }
     const double thick = std::max(WALL_DIAGONAL * diagonal, tolerance);
     if (in_asset && around.nearest - hit.t > thick)
-        suspects.push_back({i, j, hit, true, around.nearest - hit.t, thick});
+        suspects.push_back({i, j, hit, Fault::wall, around.nearest - hit.t, thick});
     if (!scene.appearance)
         return;
     if (around.surface && in_asset && around.deepest - around.nearest < FLAT_DIAGONAL * diagonal)
         out.depth.push_back(float(std::abs(error) / diagonal));
-    appearance(i, j, hit, in_source && in_asset && std::abs(error) <= tolerance);
+    appearance(i, j, hit, error, tolerance);
 }
 
 /* A leak counts where its 3x3 is covered. */

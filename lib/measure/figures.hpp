@@ -11,6 +11,7 @@ namespace gtx {
 struct Figures {
     uint64_t surface = 0, holes = 0, walls = 0, leaks = 0, both = 0, either = 0;
     /* At level 0 only; the lists until they are added up. */
+    uint64_t turned = 0;
     Vector<float> depth, angle;
     double depth_square = 0, angle_sum = 0, color_square = 0;
     Vector<PixelFault> faults;

@@ -58,6 +58,7 @@ struct DetailReport {
 struct CompareReport {
     uint32_t views = 0;
     uint64_t surface_pixels = 0, hole_pixels = 0, wall_pixels = 0, leak_pixels = 0;
+    uint64_t turned_pixels = 0;
     double silhouette_iou = 0, silhouette_iou_min = 0;
     double depth_rms = 0, depth_p99 = 0, depth_max = 0;   /* fractions of the diagonal */
     double normal_mean_deg = 0, normal_p99_deg = 0;
@@ -68,16 +69,17 @@ struct CompareReport {
     SeamReport seams;
 };
 
-/* One hole or wall pixel, to find out why it is there. */
+/* One pixel that is wrong, to find out why. */
+enum class Fault : uint8_t { hole, wall, turned };
 constexpr uint32_t CHOSEN_LEVELS = 0xffffffffu; /* each patch at its own, as for DetailReport */
 struct PixelFault {
-    bool wall;
+    Fault kind;
     uint32_t level;              /* or CHOSEN_LEVELS */
     uint32_t size, view, x, y;   /* pixels along a side of the view, which view, and where */
     uint32_t triangle;           /* of the mesh, seen there; UINT32_MAX: none */
     uint32_t patch;              /* that was hit; UINT32_MAX: none */
     uint32_t asset;              /* whose patch that is */
-    double depth;                /* by how much too deep, or too near; infinity: alone */
+    double off;                  /* by how much too deep, or too near, infinity: alone; or degrees */
     Vec3d position;              /* of the source's surface, or a wall's, object space */
 };
 
@@ -88,8 +90,8 @@ struct CompareOptions {
     bool details = true;         /* evaluate what the runtime would draw too */
     uint32_t random_views = 0;   /* beside the 26 fixed ones, of this seed */
     uint32_t seed = 0;
-    Vector<PixelFault> *faults = nullptr;     /* appended to: every hole and wall pixel of every
-                                              level and detail, views in order */
+    Vector<PixelFault> *faults = nullptr;     /* appended to: every fault of every level and
+                                              detail, views in order */
 };
 
 CompareReport compare(const gtx_asset *asset, const Mesh &mesh, const CompareOptions &options,

@@ -117,12 +117,19 @@ MeshImage rasterise(const Mesh &mesh, const View &view)
     return image;
 }
 
+View close_view(const View &view, uint32_t i, uint32_t j)
+{
+    View close = view;
+    close.middle = view.at(i, j);
+    close.size = CLOSE_SIDE;
+    close.pixel = view.pixel / CLOSER;
+    return close;
+}
+
 Vector<MeshImage> rasterise_close(const Mesh &mesh, const View &view,
                                   const Vector<ClosePixel> &pixels)
 {
-    View close = view;
-    close.size = CLOSE_SIDE;
-    close.pixel = view.pixel / CLOSER;
+    const View close = close_view(view, 0, 0); /* triangles are moved to each */
     /* Which of the pixels one is, NO_HIT for none. */
     Vector<uint32_t> which(size_t(view.size) * view.size, NO_HIT);
     uint32_t first_row = view.size, end_row = 0;

@@ -65,6 +65,8 @@ struct ClosePixel {
     uint32_t i, j;
     double deepest;
 };
+/* The view that such an image of a pixel is. */
+View close_view(const View &view, uint32_t i, uint32_t j);
 Vector<MeshImage> rasterise_close(const Mesh &mesh, const View &view,
                                   const Vector<ClosePixel> &pixels);
 

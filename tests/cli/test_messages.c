@@ -93,6 +93,7 @@ static void passed_limits_are_told(void **state)
     expect(gtx("compare sphere.gtx open.obj --any-model --size 64 --levels 1 --max-walls 3"), 7);
     expect_text("sphere.gtx: error[differs]: wall pixels ");
     expect_text(": above --max-walls 3\n");
+    expect(gtx("compare sphere.gtx sphere.obj --size 64 --levels 1 --max-turned 0"), 0);
 }
 
 static void another_model_is_refused(void **state)

@@ -75,7 +75,7 @@ static void a_missing_patch_is_a_hole(void **)
             continue;
         assert_float_equal(length(hole.position), 2, 0.01);
         assert_true(hole.position.z > 2 / std::sqrt(3.) - 0.2);
-        assert_true(hole.patch == NO_HIT || hole.depth > 0.02);
+        assert_true(hole.patch == NO_HIT || hole.off > 0.02);
     }
     gtx_close(asset);
 }
@@ -95,7 +95,7 @@ static void what_juts_out_is_a_wall(void **)
     assert_int_equal(r.hole_pixels, 0);
     uint64_t walls = 0, alone = 0;
     for (const PixelFault &fault : faults) {
-        assert_true(fault.wall);
+        assert_true(fault.kind == Fault::wall);
         assert_float_equal(length(fault.position), 2, 0.03);
         assert_true(fault.position.z > 0.5);
         alone += fault.triangle == NO_HIT;
@@ -104,6 +104,35 @@ static void what_juts_out_is_a_wall(void **)
     assert_int_equal(walls, r.wall_pixels);
     assert_int_equal(r.levels[0].wall_pixels, r.wall_pixels);
     assert_true(r.wall_pixels > 9 * 8000 && alone > 8 * 1000);
+    gtx_close(asset);
+}
+
+/* The same sphere, whose corner normals are square to the surface in its +z half. */
+static void what_faces_another_way_is_turned(void **)
+{
+    gtx_asset *asset = fixture_sphere(2, 96, 16);
+    Mesh mesh = sphere_mesh(2, 100);
+    for (size_t t = 0; t < mesh.triangle_count(); ++t)
+        for (int k = 0; k < 3; ++k)
+            mesh.normals.push_back(Vec3f(normalize(mesh.position(t, k))));
+    assert_int_equal(measure(asset, mesh, views_of(192)).turned_pixels, 0);
+    uint64_t beyond = 0;
+    for (Vec3f &n : mesh.normals)
+        if (n.z > 0.5f) {
+            n = Vec3f(normalize(cross(Vec3d(n), Vec3d(1, 0, 0))));
+            ++beyond;
+        }
+    assert_true(beyond);
+    Vector<PixelFault> faults;
+    CompareReport r = measure(asset, mesh, views_of(192, 1, &faults));
+    assert_int_equal(r.hole_pixels + r.wall_pixels, 0);
+    assert_int_equal(faults.size(), r.turned_pixels);
+    for (const PixelFault &fault : faults) {
+        assert_true(fault.kind == Fault::turned);
+        assert_in_range(fault.off, 85, 95);
+        assert_true(fault.position.z > 0.9);
+    }
+    assert_true(r.turned_pixels > 9 * 4000);
     gtx_close(asset);
 }
 
@@ -252,6 +281,7 @@ int main()
         cmocka_unit_test(a_good_sphere_has_no_fault),
         cmocka_unit_test(a_missing_patch_is_a_hole),
         cmocka_unit_test(what_juts_out_is_a_wall),
+        cmocka_unit_test(what_faces_another_way_is_turned),
         cmocka_unit_test(outlines_may_be_off_by_less_than_a_pixel),
         cmocka_unit_test(levels_are_measured),
         cmocka_unit_test(two_sided_fields),

@@ -95,7 +95,7 @@ static Colors measured(const Plan &plan, bool leaves)
                 for (uint32_t i = 0; i < view.size; ++i) {
                     if (hits[i].patch == NO_HIT)
                         continue;
-                    const Fragment fragment = of.fragment(hits[i]);
+                    const Fragment fragment = of.fragment(hits[i], view);
                     const Vec3d at = view.at(i, j), true_color = shown(at.x, at.z);
                     auto &before = seen[size_t(j) * view.size + i];
                     ++out.pixels;

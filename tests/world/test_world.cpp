@@ -180,7 +180,7 @@ static void normals_and_colors_go_on_across_borders(void **)
                     if (hits[i].patch == NO_HIT)
                         continue;
                     Seen &to = seen[size_t(j) * view.size + i];
-                    const Fragment fragment = shown.fragment(hits[i]);
+                    const Fragment fragment = shown.fragment(hits[i], view);
                     if (std::fabs(to.depth - hits[i].t) < 0.002 * extent.diagonal) {
                         ++shared;
                         const double angle = std::acos(std::clamp(

@@ -45,6 +45,7 @@ class Comparison(NamedTuple):
 
     hole_pixels: int
     wall_pixels: int
+    turned_pixels: int
     surface_pixels: int
     silhouette_iou: float
     silhouette_iou_min: float
