@@ -101,8 +101,8 @@ static std::string write_report(const CompareReport &report, const Vector<Warnin
              "%llu hole, %llu wall and %llu turned pixels, of %llu, silhouette IoU %.5f, forward "
              "RMS %.3g",
              (unsigned long long)report.hole_pixels, (unsigned long long)report.wall_pixels,
-             (unsigned long long)report.turned_pixels, (unsigned long long)report.surface_pixels, report.silhouette_iou,
-             report.error.forward.rms);
+             (unsigned long long)report.turned_pixels, (unsigned long long)report.surface_pixels,
+             report.silhouette_iou, report.error.forward.rms);
     return line;
 }
 

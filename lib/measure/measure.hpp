@@ -79,7 +79,7 @@ struct PixelFault {
     uint32_t triangle;           /* of the mesh, seen there; UINT32_MAX: none */
     uint32_t patch;              /* that was hit; UINT32_MAX: none */
     uint32_t asset;              /* whose patch that is */
-    double off;                  /* by how much too deep, or too near, infinity: alone; or degrees */
+    double off;                  /* by how much too deep, or too near (infinity: alone); degrees */
     Vec3d position;              /* of the source's surface, or a wall's, object space */
 };
 
