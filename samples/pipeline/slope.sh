@@ -5,7 +5,7 @@
 # Needs Ninja, and /usr/bin/time of GNU. Worlds stay in FOLDER/TRIANGLES, 120 bytes a triangle; a
 # step that was killed begins again, what was cooked stays.
 set -e
-gtx=$1 sculpt=$2 folder=$3 jobs=$4
+gtx=$(realpath "$1") sculpt=$2 folder=$3 jobs=$4 # Ninja works in the world's folder
 shift 4
 mkdir -p "$folder"
 
