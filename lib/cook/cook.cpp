@@ -166,7 +166,7 @@ static std::unique_ptr<Report> report_on(const gtx_asset *asset, const Options &
 
 /* The whole line. Without an output the asset is only returned. */
 static Cooked cook(const ModelInput &input, const char *output, const gtx_cook_desc &desc,
-                  gtx_report *report)
+                   gtx_report *report)
 {
     const Options options = checked_options(desc);
     auto start = std::chrono::steady_clock::now();
