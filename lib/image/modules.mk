@@ -7,7 +7,7 @@ modules := $(patsubst %,$(out)/geotex-%.so,image png-jpeg $(gdal)) $(netcdf)
 # They are looked for beside the program that asks: links for those that lie elsewhere.
 module_image := OpenImageIO
 module_grid  := gdal libtiff-4
-link_beside = $(Q)for d in $(out)/samples $(sort $(dir $(test_bins))); do \
+link_beside = $(Q)for d in $(out)/samples $(out)/tests/bench $(sort $(dir $(test_bins))); do \
 	  mkdir -p $$d && ln -sf $(abspath $@) $$d; done
 $(patsubst %,$(out)/geotex-%.so,image $(gdal)): $(out)/geotex-%.so: lib/%/module.cpp \
     lib/%/module.h Makefile | $(out)/sees/.made

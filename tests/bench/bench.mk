@@ -10,12 +10,16 @@ run-bench: $(MODEL)
 	@$(build)/gtx bench $(build)/demo/bench.gtx $(MODEL) --min-iou 0.99 $(BENCH)
 
 # Paths are files of tests/bench/paths, SCENE or SCENE_NAME; a scene is what model_SCENE was cooked
-# to. Of reek the four horizons are one asset.
+# to. Of reek the four horizons are one asset, as given and as resampled for the paper's Figure 9.
 reek_files   = 1_topreek_rota.gri 1_midreek_rota.gri 1_lowreek_rota.gri 1_basereek_rota.gri
 reek_grids   = $(reek_files:%=$(GEOTEX_MODELS)/heightfields/reek/%)
 model_andes  = $(GEOTEX_MODELS)/draco/andes_S33W071_2880k_q16.drc
 model_dragon = $(GEOTEX_MODELS)/draco/dragon_810k_loop_q14.drc
 model_reek  := $(build)/paths/reek.ply
+fine_folder  = $(GEOTEX_MODELS)/heightfields/reek_1588x1188
+fine_grids   = $(foreach h,0_top 1_mid 2_low 3_base,$(fine_folder)/$(h)reek_rota_z16.png)
+fine_options = --depths --range 1547.1962890625,1976.0126953125 --spacing 6.969124,7.58214
+model_horizons := $(build)/paths/horizons.ply
 model_hall  := $(build)/paths/hall.glb
 model_cave  := $(build)/paths/cave.glb
 scene_of     = $(firstword $(subst _, ,$(1)))
@@ -39,6 +43,14 @@ $(build)/paths/hall.glb $(build)/paths/cave.glb: $(build)/paths/%.glb: $(out)/sa
 $(build)/paths/reek.ply: $(out)/tests/bench/grid_mesh
 	@mkdir -p $(@D)
 	@$< $@ --depths $(reek_grids)
+
+$(build)/paths/horizons.ply: $(out)/tests/bench/grid_mesh
+	@mkdir -p $(@D)
+	@$< $@ $(fine_options) $(fine_grids)
+
+$(build)/paths/horizons.gtx: $(command)
+	@mkdir -p $(@D)
+	@$(build)/gtx horizons $(fine_grids) $(fine_options) --missing 0 -o $@
 
 $(build)/paths/reek.gtx: $(command)
 	@mkdir -p $(@D)

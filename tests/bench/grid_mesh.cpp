@@ -1,7 +1,7 @@
 /* Writes height grids as a triangle mesh, as `gtx horizons` places them: east +X, up +Y, north -Z,
  * two triangles a cell that has its four nodes.
  *
- *   grid_mesh OUT.ply [--depths] [--vertical X] GRID...
+ *   grid_mesh OUT.ply [--depths] [--vertical X] [--spacing DX,DY] [--range LOW,HIGH] GRID...
  */
 #include <geotex/cook.h>
 
@@ -64,7 +64,8 @@ static bool write_ply(const char *path, const Surface &surface)
 int main(int argc, char **argv)
 {
     Surface surface;
-    double sign = 1, vertical = 1;
+    double sign = 1, vertical = 1, spacing[2] = {};
+    gtx_height_grid_desc desc = {};
     for (int i = 2; i < argc; ++i) {
         gtx_height_grid grid;
         gtx_error error;
@@ -72,16 +73,25 @@ int main(int argc, char **argv)
             sign = -1;
         } else if (!std::strcmp(argv[i], "--vertical") && i + 1 < argc) {
             vertical = std::atof(argv[++i]);
-        } else if (gtx_height_grid_read(argv[i], nullptr, &grid, &error)) {
+        } else if (!std::strcmp(argv[i], "--spacing") && i + 1 < argc) {
+            std::sscanf(argv[++i], "%lf,%lf", spacing, spacing + 1);
+        } else if (!std::strcmp(argv[i], "--range") && i + 1 < argc) {
+            /* of images: black is no data */
+            std::sscanf(argv[++i], "%lf,%lf", desc.range, desc.range + 1);
+            desc.has_missing = 1;
+        } else if (gtx_height_grid_read(argv[i], &desc, &grid, &error)) {
             std::fprintf(stderr, "%s: error: %s\n", argv[i], error.message);
             return 1;
         } else {
+            for (int k = 0; k < 2; ++k)
+                grid.spacing[k] = spacing[k] > 0 ? spacing[k] : grid.spacing[k];
             add_grid(surface, grid, sign * vertical);
             gtx_height_grid_free(&grid);
         }
     }
     if (surface.corners.empty() || !write_ply(argv[1], surface)) {
-        std::fprintf(stderr, "usage: grid_mesh OUT.ply [--depths] [--vertical X] GRID...\n");
+        std::fprintf(stderr, "usage: grid_mesh OUT.ply [--depths] [--vertical X] "
+                             "[--spacing DX,DY] [--range LOW,HIGH] GRID...\n");
         return 1;
     }
     return 0;
