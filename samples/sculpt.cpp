@@ -4,9 +4,10 @@
  *     sculpt [--shape shell|hall|cave] [--triangles N] OUT.glb
  *
  * For `-` it writes nothing but triangles to stdout, nine little-endian floats each, as many as
- * wanted without holding them: for `gtx world plan -`.
+ * wanted without holding them: for `gtx world plan -`; and of a height grid a terrain, with relief
+ * between its nodes.
  */
-#include "raw.hpp"
+#include "terrain.hpp"
 
 #include "base/output.h"
 
@@ -97,28 +98,52 @@ static std::string make_glb(const Model &model)
     return "glTF" + word(2) + word(12 + chunks.size()) + chunks;
 }
 
+static int write_terrain(const char *path, double wanted)
+{
+    gtx_height_grid grid;
+    gtx_error error;
+    if (gtx_height_grid_read(path, nullptr, &grid, &error)) {
+        std::fprintf(stderr, "sculpt: error: %s\n", error.message);
+        return 2;
+    }
+    if (grid.nx < 2 || grid.ny < 2) {
+        std::fprintf(stderr, "%s: error: a single row of nodes\n", path);
+        gtx_height_grid_free(&grid);
+        return 2;
+    }
+    const Terrain terrain(grid);
+    gtx_height_grid_free(&grid);
+    terrain.stream(wanted, write_triangle);
+    return std::fflush(stdout) ? 2 : 0;
+}
+
 int main(int argc, char **argv)
 {
     double wanted = 800000;
     std::string shape = "shell";
+    const char *grid = nullptr;
     int at = 1;
     for (; at + 2 < argc; at += 2)
         if (!std::strcmp(argv[at], "--triangles"))
             wanted = std::atof(argv[at + 1]);
         else if (!std::strcmp(argv[at], "--shape"))
             shape = argv[at + 1];
+        else if (!std::strcmp(argv[at], "--terrain"))
+            grid = argv[at + 1];
         else
             break;
     bool known = shape == "shell" || shape == "hall" || shape == "cave";
     const bool streams = at + 1 == argc && !std::strcmp(argv[at], "-");
-    const bool writes = at + 1 == argc && argv[at][0] != '-' && wanted <= 2e7;
+    const bool writes = at + 1 == argc && argv[at][0] != '-' && wanted <= 2e7 && !grid;
     if (!known || !(streams || writes) || !(wanted >= 1000 && wanted <= 1e10)) {
         std::fprintf(stderr, "usage: sculpt [--shape shell|hall|cave] "
                              "[--triangles 1000..20000000] OUT.glb\n"
-                             "       sculpt [--shape shell|hall|cave] [--triangles N] - "
-                             "| gtx world plan - -o DIR\n");
+                             "       sculpt [--shape shell|hall|cave | --terrain GRID] "
+                             "[--triangles N] - | gtx world plan - -o DIR\n");
         return 1;
     }
+    if (grid)
+        return write_terrain(grid, wanted);
     if (streams)
         return write_stream(shape, wanted);
     Model model = shape == "hall"   ? in_rock(make_rings(wanted, 1, hall_at))

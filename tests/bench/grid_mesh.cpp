@@ -80,7 +80,7 @@ int main(int argc, char **argv)
             std::sscanf(argv[++i], "%lf,%lf", desc.range, desc.range + 1);
             desc.has_missing = 1;
         } else if (gtx_height_grid_read(argv[i], &desc, &grid, &error)) {
-            std::fprintf(stderr, "%s: error: %s\n", argv[i], error.message);
+            std::fprintf(stderr, "grid_mesh: error: %s\n", error.message);
             return 1;
         } else {
             for (int k = 0; k < 2; ++k)

@@ -77,6 +77,26 @@ static void halls_and_caves_are_around_the_eye(void **state)
                          "grep -q '\"triangles\": 22' $T/cave/plan.json"), 0);
 }
 
+/* 3 x 3 nodes, the middle one without data: a square of 100 x 100 cells, as low there as the lowest
+ * node. */
+static void a_terrain_goes_through_the_nodes_of_its_grid(void **state)
+{
+    (void)state;
+    assert_int_equal(run("printf -- '-996 3 10 10\\n0 20 0 20\\n3 0 0 0\\n0 0 0 0 0 0 0\\n"
+                         "5 5 5 5 9999900 5 5 5 5\\n' >$T/flat.irap && "
+                         "$S/sculpt --terrain $T/flat.irap --triangles 20000 - >$T/flat.raw && "
+                         "test $(wc -c <$T/flat.raw) = 720000 && "
+                         "$GTX world plan - -o $T/flat -q <$T/flat.raw && "
+                         "grep -q '\"triangles\": 20000' $T/flat/plan.json"), 0);
+    assert_int_equal(run("test \"$(od -A n -t f4 -v -w36 $T/flat.raw | awk '{"
+                         "for (i = 1; i < 9; i += 3) {"
+                         " if ($i > east) east = $i; if (-$(i + 2) > north) north = -$(i + 2);"
+                         " if ($(i + 1) != 5) other = 1 }}"
+                         "END { print east, north, other + 0 }')\" = '20 20 0'"), 0);
+    assert_int_equal(run("$S/sculpt --terrain $T/flat.irap $T/no.glb 2>/dev/null"), 1);
+    assert_int_equal(run("$S/sculpt --terrain $T/no.irap - 2>/dev/null"), 2);
+}
+
 static void an_interrupt_leaves_nothing_behind(void **state)
 {
     (void)state;
@@ -230,6 +250,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(cooking_says_how_far_it_is),
         cmocka_unit_test(halls_and_caves_are_around_the_eye),
+        cmocka_unit_test(a_terrain_goes_through_the_nodes_of_its_grid),
         cmocka_unit_test(an_interrupt_leaves_nothing_behind),
         cmocka_unit_test(an_asset_is_printed),
         PICTURE(smallest),
