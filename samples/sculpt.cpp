@@ -100,21 +100,20 @@ static std::string make_glb(const Model &model)
 
 static int write_terrain(const char *path, double wanted)
 {
-    gtx_height_grid grid;
+    gtx_height_grid grid = {};
     gtx_error error;
-    if (gtx_height_grid_read(path, nullptr, &grid, &error)) {
+    if (gtx_height_grid_read(path, nullptr, &grid, &error) ||
+        gtx_height_grid_to_metres(&grid, grid.origin[1] + grid.spacing[1] * grid.ny / 2, &error)) {
         std::fprintf(stderr, "sculpt: error: %s\n", error.message);
-        return 2;
-    }
-    if (grid.nx < 2 || grid.ny < 2) {
-        std::fprintf(stderr, "%s: error: a single row of nodes\n", path);
+    } else if (grid.nx < 2 || grid.ny < 2) {
+        std::fprintf(stderr, "sculpt: error: %s: a single row of nodes\n", path);
+    } else {
+        Terrain(grid).stream(wanted, write_triangle);
         gtx_height_grid_free(&grid);
-        return 2;
+        return std::fflush(stdout) ? 2 : 0;
     }
-    const Terrain terrain(grid);
     gtx_height_grid_free(&grid);
-    terrain.stream(wanted, write_triangle);
-    return std::fflush(stdout) ? 2 : 0;
+    return 2;
 }
 
 int main(int argc, char **argv)

@@ -19,11 +19,6 @@ public:
             lowest = std::fmin(lowest, h);
         for (float &h : heights)
             h = std::isnan(h) ? lowest : h;
-        if (grid.in_degrees) { /* on a sphere of 40,000 km around */
-            const double middle = grid.origin[1] + spacing[1] * ny / 2;
-            spacing[0] *= 4e7 / 360 * std::cos(PI / 180 * middle);
-            spacing[1] *= 4e7 / 360;
-        }
         find_roughness();
     }
 

@@ -252,7 +252,9 @@ typedef struct gtx_compare_desc {
                                      is recognised by a hash of its content and its textures' */
     uint32_t figures_only;        /* 1: measure no more than gtx_compare_result holds; the report
                                      has level 0 alone, and no details */
-    uint32_t reserved[4];
+    uint32_t local_metres;        /* 1: grids in degrees become metres, true at the latitude of
+                                     the first one's middle (gtx_height_grid_to_metres) */
+    uint32_t reserved[3];
 } gtx_compare_desc;
 
 /* Figures that a build may put limits on; format/measures.md defines each. */

@@ -19,6 +19,7 @@ static void check(const gtx_compare_desc &desc)
     require_argument(desc.threads <= 1024, "threads is at most 1024");
     require_argument(desc.z_up <= 1, "z_up is 0 or 1");
     require_argument(desc.any_model <= 1, "any_model is 0 or 1");
+    require_argument(desc.local_metres <= 1, "local_metres is 0 or 1");
     require_argument(desc.figures_only <= 1, "figures_only is 0 or 1");
     require_models(desc.more, desc.more_count);
 }
@@ -130,7 +131,8 @@ CompareTask::CompareTask(const gtx_compare_desc &desc)
 Models read_compared(const char *model, const gtx_compare_desc &desc, Task &task)
 {
     return read_sources(model, desc.more, desc.more_count,
-                        {text_of(desc.texture_dir), text_of(desc.base_color)}, task);
+                        {text_of(desc.texture_dir), text_of(desc.base_color)},
+                        desc.local_metres, task);
 }
 
 void compare_models(const ShownAt &shown, uint32_t levels, Models &models,

@@ -53,8 +53,8 @@ static uint64_t check(const gtx_height_grid *grids, uint32_t count, const gtx_ho
         require_placed(g);
         if (g.in_degrees)
             throw Error(GTX_ERROR_INPUT, name + IN_DEGREES +
-                                             ", take metres of one place (--local-metres), or say "
-                                             "how far its nodes are apart (--spacing)");
+                                             ", or say how far its nodes are apart "
+                                             "(--spacing)");
         if (g.nx < 2 || g.ny < 2)
             throw Error(GTX_ERROR_INPUT, name + " has " + std::to_string(g.nx) + " x " +
                                              std::to_string(g.ny) +

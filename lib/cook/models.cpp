@@ -173,7 +173,7 @@ static bool is_grid(const char *path)
 }
 
 Models read_sources(const char *first, const char *const *more, uint32_t more_count,
-                    const TextureFiles &textures, Task &task)
+                    const TextureFiles &textures, bool local_metres, Task &task)
 {
     Vector<const char *> models, grids;
     for (uint32_t i = 0; i <= more_count; ++i) {
@@ -184,9 +184,13 @@ Models read_sources(const char *first, const char *const *more, uint32_t more_co
     if (!models.empty())
         out = read_models({models[0]}, models.data() + 1, uint32_t(models.size() - 1), textures,
                           task);
+    double latitude = NAN;
     for (const char *path : grids) {
         append(out.grids, naming(path, more_count > 0, task, [&] {
-            return mesh_of(read_grid(path, {}, task), task);
+            HeightGrid grid = read_grid(path, {}, task);
+            if (local_metres)
+                use_common_metres(grid, latitude);
+            return mesh_of(grid, task);
         }));
         out.sources.push_back(path);
         out.hash = 0; /* nothing is cooked from grids and models */

@@ -40,7 +40,8 @@ constexpr uint32_t MAX_SIDE = 1 << 24;
 
 /* What is wrong with a grid in degrees; its name goes before. */
 constexpr const char *IN_DEGREES = " lies in degrees, and its heights do not: reproject it to "
-                                   "metres (gdalwarp -t_srs EPSG:...)";
+                                   "metres (gdalwarp -t_srs EPSG:...), or take metres of one "
+                                   "place (--local-metres)";
 
 /* What a file may leave open. */
 struct GridReading {
@@ -119,6 +120,8 @@ HeightGrid mosaic(const Vector<HeightGrid> &parts, const Limits &limits = Limits
 
 /* A grid in degrees becomes one in metres, which are true at a latitude (WGS 84). */
 void use_local_metres(HeightGrid &grid, double latitude);
+/* Likewise of several: the latitude, NaN at first, becomes that of the first one's middle. */
+void use_common_metres(HeightGrid &grid, double &latitude);
 
 /* Values of `from` at the nodes of `to`: between its nodes bilinear, the mean over what a node of
  * `to` stands for where those are further apart; of categories the nearest and most frequent; NaN

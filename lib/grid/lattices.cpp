@@ -26,6 +26,15 @@ void use_local_metres(HeightGrid &grid, double latitude)
     grid.in_degrees = false;
 }
 
+void use_common_metres(HeightGrid &grid, double &latitude)
+{
+    if (!grid.in_degrees)
+        return;
+    if (std::isnan(latitude))
+        latitude = grid.origin[1] + grid.step[1] * (grid.ny - 1) / 2;
+    use_local_metres(grid, latitude);
+}
+
 /* Node coordinates in one lattice -> those in another. */
 class Passage {
 public:

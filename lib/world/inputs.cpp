@@ -80,11 +80,14 @@ namespace {
 
 class GridStream : public TriangleStream {
 public:
-    GridStream(const std::string &path, Task &task) : path_(path), task_(task) {}
+    GridStream(const std::string &path, double latitude, Task &task)
+        : path_(path), latitude_(latitude), task_(task) {}
     CornerTraits traits() const override { return {true, false, false}; }
     void read(const TriangleSink &sink) override
     {
-        const HeightGrid grid = read_grid(path_, {}, task_);
+        HeightGrid grid = read_grid(path_, {}, task_);
+        if (!std::isnan(latitude_))
+            use_local_metres(grid, latitude_);
         require_lengths(grid);
         for (uint32_t row = 0; row + 1 < grid.ny; ++row) {
             task_.advance(double(row) / grid.ny);
@@ -99,17 +102,19 @@ public:
 
 private:
     const std::string path_;
+    const double latitude_;
     Task &task_;
 };
 
 } // namespace
 
-static std::unique_ptr<TriangleStream> open_input(const WorldInput &input, Task &task)
+static std::unique_ptr<TriangleStream> open_input(const WorldInput &input, double latitude,
+                                                  Task &task)
 {
     if (input.raw)
         return open_raw_triangles(input.path, task);
     if (input.grid)
-        return std::make_unique<GridStream>(input.path, task);
+        return std::make_unique<GridStream>(input.path, latitude, task);
     return open_triangles(input.path, task);
 }
 
@@ -119,7 +124,7 @@ template <class Body> static void for_each_input(const Plan &plan, Task &task, B
     for (const WorldInput &input : plan.inputs) {
         const size_t before = task.warnings.size();
         try {
-            body(input, *open_input(input, task));
+            body(input, *open_input(input, plan.latitude, task));
         } catch (Error &e) {
             if (e.result != GTX_CANCELLED)
                 e.message.insert(0, input.path + ": ");
@@ -137,6 +142,17 @@ CornerTraits input_traits(const Plan &plan, Task &task)
         traits.add(stream.traits());
     });
     return traits;
+}
+
+double input_latitude(const Plan &plan, Task &task)
+{
+    double latitude = NAN;
+    for (const WorldInput &input : plan.inputs)
+        if (input.grid && std::isnan(latitude)) {
+            HeightGrid grid = read_grid(input.path, {}, task);
+            use_common_metres(grid, latitude);
+        }
+    return latitude;
 }
 
 uint64_t read_inputs(const Plan &plan, Task &task, const TriangleSink &sink,

@@ -107,6 +107,8 @@ StepReport plan_world(const PlanOptions &options, Task &task)
     for (const WorldInput &input : plan.inputs)
         if (input.raw)
             keep_stdin(input.path, task);
+    if (options.local_metres)
+        plan.latitude = input_latitude(plan, task);
     plan.traits = input_traits(plan, task);
     count(plan, options.sides, task);
     if (plan.dropped)

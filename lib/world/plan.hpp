@@ -47,6 +47,7 @@ struct Plan {
     bool glb = false, z_up = false;
     bool closed = false;             /* back faces are never seen */
     double unit = 1;
+    double latitude = NAN;           /* where metres are true that grids in degrees become */
     CornerTraits traits;
     Lattice lattice;
     Vector<WorldInput> inputs;
@@ -89,6 +90,8 @@ void write_whole(const std::string &path, const std::string &text);
 uint64_t read_inputs(const Plan &plan, Task &task, const TriangleSink &sink,
                      const LookSink &on_look = nullptr);
 CornerTraits input_traits(const Plan &plan, Task &task);
+/* That of the middle of the first grid in degrees; NaN if there is none. */
+double input_latitude(const Plan &plan, Task &task);
 /* The input files, those of folders sorted by name. Throws Error: READ; ARGUMENT if the world's
  * folder is among them. */
 Vector<WorldInput> find_inputs(const PlanOptions &options);

@@ -133,6 +133,8 @@ void write_plan(const Plan &plan)
     gtx_json_bool(&out, "closed", plan.closed);
     gtx_json_string(&out, "up", plan.z_up ? "z" : "y");
     gtx_json_exact(&out, "unit", plan.unit);
+    if (!std::isnan(plan.latitude))
+        gtx_json_exact(&out, "latitude", plan.latitude);
     gtx_json_bool(&out, "doubles", plan.traits.doubles);
     gtx_json_bool(&out, "normals", plan.traits.normals);
     gtx_json_bool(&out, "colors", plan.traits.colors);
@@ -207,6 +209,7 @@ static void read_parts(const json &from, Plan &plan)
     plan.closed = from.value("closed", false);
     plan.z_up = from.at("up") == "z";
     plan.unit = from.at("unit");
+    plan.latitude = from.value("latitude", plan.latitude);
     plan.traits = {from.at("doubles"), from.at("normals"), from.at("colors"),
                    from.value("textured", false)};
     plan.lattice.exponent = int(whole_of(from.at("lattice").at("exponent"), 1100));

@@ -58,6 +58,10 @@ static void numbers_of_a_plan_are_whole(void **)
         assert_int_equal(read_result(changed(plan_text, "exponent", value)), GTX_ERROR_INPUT);
     for (const char *value : {"0", "-1", "null", "1e999"})
         assert_int_equal(read_result(changed(plan_text, "unit", value)), GTX_ERROR_INPUT);
+    const size_t after = plan_text.find("\"doubles\":");
+    for (const char *value : {"null", "[]", "\"1\""})
+        assert_int_equal(read_result(plan_text.substr(0, after) + "\"latitude\": " + value + "," +
+                                     plan_text.substr(after)), GTX_ERROR_INPUT);
 }
 
 static void a_lattice_stays_in_its_numbers(void **)
