@@ -104,18 +104,19 @@ private:
     double height(double x, double y, double finer) const
     {
         const int64_t i = int64_t(x), j = int64_t(y);
-        const auto wx = weights(x - double(i)), wy = weights(y - double(j));
-        double sum = 0, amplitude = 0;
+        const double tx = x - double(i), ty = y - double(j);
+        const auto wx = weights(tx), wy = weights(ty);
+        double sum = 0;
         for (int b = 0; b < 4; ++b)
             for (int a = 0; a < 4; ++a)
                 sum += wx[size_t(a)] * wy[size_t(b)] * double(at(heights, i + a - 1, j + b - 1));
-        for (int corner = 0; corner < 4; ++corner) {
-            const int a = corner & 1, b = corner >> 1;
-            amplitude += (a ? x - double(i) : 1 - (x - double(i))) *
-                         (b ? y - double(j) : 1 - (y - double(j))) * double(at(rough, i + a, j + b));
-        }
+        const auto rough_at = [&](int a, int b) { return double(at(rough, i + a, j + b)); };
+        const double near_row = mix(rough_at(0, 0), rough_at(1, 0), tx);
+        const double far_row = mix(rough_at(0, 1), rough_at(1, 1), tx);
+        /* values in -1..1 lie 0.56 from between their neighbours on average */
+        double amplitude = mix(near_row, far_row, ty) / 0.56;
         for (double scale = 2; scale < 2 * finer; scale *= 2)
-            sum += 2 * (amplitude *= gain) * noise(scale * x, scale * y, scale);
+            sum += (amplitude *= gain) * noise(scale * x, scale * y, scale);
         return sum;
     }
 };

@@ -42,7 +42,7 @@ struct PlanOptions {
     uint64_t work = 0;               /* limit of each step; 0: the default for files of its size */
     Engine engine = Engine::NINJA;
     bool glb = false, z_up = false;
-    bool local_metres = false;       /* grids in degrees become metres, true at the first's middle */
+    bool local_metres = false;       /* of grids in degrees; true at the first's middle */
     Sides sides = Sides::AUTO;       /* that are visible */
     double unit = 1;
     std::string command = "gtx";     /* that runs the steps */
