@@ -60,11 +60,6 @@ gtx_frustum gtx_frustum_of(const gtx_draw_call *draw, const gtx_model *model,
     return f;
 }
 
-double gtx_plane_at(const gtx_plane *p, const float sphere[4])
-{
-    return p->row[0] * sphere[0] + p->row[1] * sphere[1] + p->row[2] * sphere[2] + p->row[3];
-}
-
 /* Whether the sphere reaches out of a plane's inside. */
 static bool reaches_out(const gtx_plane *p, const float sphere[4])
 {

@@ -32,7 +32,11 @@ gtx_frustum gtx_frustum_of(const gtx_draw_call *draw, const gtx_model *model,
                            const gtx_instance_data *placed);
 
 /* Of spheres: x, y, z, radius. */
-double gtx_plane_at(const gtx_plane *p, const float sphere[4]);
+static inline double gtx_plane_at(const gtx_plane *p, const float sphere[4])
+{
+    return p->row[0] * sphere[0] + p->row[1] * sphere[1] + p->row[2] * sphere[2] + p->row[3];
+}
+
 bool gtx_is_before_near(const gtx_frustum *f, const float sphere[4]);
 bool gtx_is_outside(const gtx_frustum *f, const float sphere[4]);
 /* Whether a part of it may be beside what an eye sees. */

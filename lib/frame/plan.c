@@ -32,9 +32,11 @@ gtx_result gtx_plan_reserve(gtx_planner *planner, uint32_t patches, gtx_error *e
     plan->capacity = patches;
     plan->ranges = gtx_alloc_array(hooks, 2 * (size_t)patches, sizeof *plan->ranges);
     plan->entries = gtx_alloc_array(hooks, patches, sizeof *plan->entries);
+    plan->found = gtx_alloc_array(hooks, patches, sizeof *plan->found);
+    plan->ranks = gtx_alloc_array(hooks, 2 * (size_t)patches, sizeof *plan->ranks);
     plan->ways = gtx_alloc_array(hooks, patches, sizeof *plan->ways);
     plan->parts = gtx_alloc_array(hooks, patches, sizeof *plan->parts);
-    if (plan->ranges && plan->entries && plan->ways && plan->parts)
+    if (plan->ranges && plan->entries && plan->found && plan->ranks && plan->ways && plan->parts)
         return GTX_OK;
     gtx_plan_free(planner);
     return gtx_fail(error, GTX_ERROR_MEMORY, "no memory to draw %u patches", patches);
@@ -46,6 +48,8 @@ void gtx_plan_free(gtx_planner *planner)
     const gtx_allocator *hooks = &planner->allocator;
     gtx_free_array(hooks, plan->ranges, 2 * (size_t)plan->capacity, sizeof *plan->ranges);
     gtx_free_array(hooks, plan->entries, plan->capacity, sizeof *plan->entries);
+    gtx_free_array(hooks, plan->found, plan->capacity, sizeof *plan->found);
+    gtx_free_array(hooks, plan->ranks, 2 * (size_t)plan->capacity, sizeof *plan->ranks);
     gtx_free_array(hooks, plan->ways, plan->capacity, sizeof *plan->ways);
     gtx_free_array(hooks, plan->parts, plan->capacity, sizeof *plan->parts);
     *plan = (gtx_plan){0};
@@ -62,13 +66,27 @@ uint32_t gtx_plan_whole(const gtx_draw_call *draw, const gtx_model *model,
     return model->coarsest_error <= gtx_allowed_error(&f, model->sphere) ? model->mip_count : 0;
 }
 
-/* Boxes come first, in order of their levels. */
-static int compare(const void *a, const void *b)
+static int compare_patches(const void *a, const void *b)
 {
     const gtx_plan_entry *x = a, *y = b;
-    if (x->distance != y->distance)
-        return x->distance < y->distance ? -1 : 1;
     return x->patch < y->patch ? -1 : x->patch > y->patch;
+}
+
+/* By distance, and where that is the same by patch: boxes come first, in order of their levels. */
+static void sort(gtx_plan *plan)
+{
+    for (uint32_t i = 0; i < plan->count; ++i)
+        plan->ranks[i] = gtx_rank_of(plan->found[i].distance, i);
+    gtx_order(plan->ranks, plan->ranks + plan->count, plan->count);
+    for (uint32_t i = 0; i < plan->count; ++i)
+        plan->entries[i] = plan->found[plan->ranks[i].place];
+    for (uint32_t first = 0, end; first < plan->count; first = end) {
+        for (end = first + 1; end < plan->count; ++end)
+            if (plan->entries[end].distance != plan->entries[first].distance)
+                break;
+        if (end > first + 1)
+            qsort(plan->entries + first, end - first, sizeof *plan->entries, compare_patches);
+    }
 }
 
 /* Of patches that are seen from two sides, LOD meshes of more triangles than that are not drawn
@@ -139,10 +157,10 @@ void gtx_plan_patches(const gtx_draw_call *draw, const gtx_model *model,
         const bool box = facts->boxed || gtx_is_before_near(&f, facts->hull);
         const uint32_t level = level_of(&f, model, facts);
         const float distance = (float)gtx_plane_at(&f.side[0], facts->hull);
-        plan->entries[plan->count++] = (gtx_plan_entry){
-            box ? (float)level - GTX_MAX_MIPS : fmaxf(distance, 0), i, level};
+        plan->found[plan->count++] = (gtx_plan_entry){
+            box ? (float)level - GTX_MAX_MIPS : distance > 0 ? distance : 0, i, level};
     }
-    qsort(plan->entries, plan->count, sizeof *plan->entries, compare);
+    sort(plan);
 }
 
 void gtx_plan_proxies(gtx_plan *plan, const gtx_model *model)

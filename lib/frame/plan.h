@@ -3,6 +3,7 @@
 #define GTX_FRAME_PLAN_H
 
 #include "frame/model.h"
+#include "frame/order.h"
 #include "frame/view.h"
 
 /* How a patch in view is drawn. From GTX_BY_LOD on: by level n - GTX_BY_LOD of the LOD mesh. */
@@ -20,7 +21,8 @@ typedef struct gtx_plan_entry {
  * by level, then the hulls. */
 typedef struct gtx_plan {
     uint32_t capacity, count;
-    gtx_plan_entry *entries;
+    gtx_plan_entry *entries, *found; /* found: room to sort them */
+    gtx_rank *ranks;          /* two a patch, likewise */
     uint8_t *ways, *parts;    /* of each patch: how it is drawn, and what of it by one LOD mesh */
     bool any_lod;
     uint32_t box_count[GTX_MAX_MIPS], hull_count; /* boxes by the level that is cast */
