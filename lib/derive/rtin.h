@@ -44,7 +44,7 @@ typedef struct gtx_rtin_node {
 /* SOLID: the cell from the node on exists; WITHIN: the trim lets the node show. */
 enum {
     GTX_RTIN_ROUGH = 0x8000, GTX_RTIN_SOLID = 0x4000, GTX_RTIN_WITHIN = 0x2000,
-    GTX_RTIN_MAX_ERROR = 0x1fff
+    GTX_RTIN_MAX_ERROR = 0x1fff, GTX_RTIN_ERRORS = 14
 };
 
 /* What shows of a block: its 4x4 parts of 2x2 cells, in rows. */
@@ -58,6 +58,8 @@ typedef struct gtx_rtin_block {
  * cells; where the surface bends away from them they are divided when they are drawn. */
 typedef struct gtx_rtin {
     uint32_t columns, rows;   /* blocks */
+    uint32_t halved[GTX_RTIN_ERRORS]; /* nodes of an error of 2^k and more that the trim
+                                         lets show, about */
     float unit;               /* of errors, in object units */
     uint16_t rise[GTX_RTIN_LEVELS]; /* codes from a middle of the level to those of the halves, at
                                        most, where they have an error; of the last level from the

@@ -9,10 +9,14 @@ typedef struct patch_view {
     double side[GTX_FRUSTUM_SIDES][4];
     uint32_t side_count;      /* that cut the patch */
     double eye[4], w[4];      /* w: of clip space */
-    double toward[3][4];      /* the way to the eye in object space, as eye[3] scales it */
     bool two_sided;
-    double scale;             /* pixels square an object unit cubed, for pixels_of */
 } patch_view;
+
+/* What pixels_of needs besides. */
+typedef struct patch_scale {
+    double toward[3][4];      /* the way to the eye in object space, as eye[3] scales it */
+    double scale;             /* pixels square an object unit cubed */
+} patch_scale;
 
 /* A linear function over object space, over grid space. */
 static void take_to_grid(const double row[4], gtx_record record, double out[4])
@@ -47,25 +51,32 @@ static patch_view view_of(const gtx_frustum *f, const gtx_model *model, uint32_t
         if (gtx_plane_at(&f->side[k], sphere) < f->side[k].slope * sphere[3])
             take_to_grid(f->side[k].row, record, v.side[v.side_count++]);
     take_to_grid(f->w.row, record, v.w);
-    for (int r = 0; r < 3; ++r) {
-        double row[4] = {0, 0, 0, f->eye[r]};
-        row[r] = -f->eye[3];
-        take_to_grid(row, record, v.toward[r]);
+    for (int r = 0; r < 3; ++r)
         for (int k = 0; k < 4; ++k)
             v.eye[r] += (double)record[GTX_RECORD_TO_GRID + r][k] * f->eye[k];
-    }
     v.eye[3] = f->eye[3];
-    v.scale = f->pixels * f->pixels * volume_of(record);
     return v;
 }
 
+static patch_scale scale_of(const gtx_frustum *f, const gtx_model *model, uint32_t patch)
+{
+    float (*record)[4] = model->records[patch];
+    patch_scale s = {.scale = f->pixels * f->pixels * volume_of(record)};
+    for (int r = 0; r < 3; ++r) {
+        double row[4] = {0, 0, 0, f->eye[r]};
+        row[r] = -f->eye[3];
+        take_to_grid(row, record, s.toward[r]);
+    }
+    return s;
+}
+
 /* The greatest that the linear function a x + b y has in the rectangle. */
-static double greatest(const gtx_slab *s, double a, double b)
+static inline double greatest(const gtx_slab *s, double a, double b)
 {
     return a * (a > 0 ? s->high[0] : s->low[0]) + b * (b > 0 ? s->high[1] : s->low[1]);
 }
 
-static bool is_in_view(const patch_view *v, const gtx_slab *s)
+static inline bool is_in_view(const patch_view *v, const gtx_slab *s)
 {
     for (uint32_t k = 0; k < v->side_count; ++k) {
         const double *p = v->side[k];
@@ -83,18 +94,18 @@ static inline double lesser(double a, double b)
 }
 
 /* The least of rise * away, of both in their ranges. */
-static double least_product(const float rise[2], double low, double high)
+static inline double least_product(const float rise[2], double low, double high)
 {
     return lesser(lesser(rise[0] * low, rise[0] * high), lesser(rise[1] * low, rise[1] * high));
 }
 
-static double at(const double row[4], const double x[3])
+static inline double at(const double row[4], const double x[3])
 {
     return row[0] * x[0] + row[1] * x[1] + row[2] * x[2] + row[3];
 }
 
 /* Pixels that a block covers, roughly: `above` is how far the eye is above its slope. */
-static double pixels_of(const patch_view *v, const gtx_slab *s)
+static inline double pixels_of(const patch_view *v, const patch_scale *to, const gtx_slab *s)
 {
     double grid[3], above = v->eye[2], away = 0;
     const double middle = ((double)s->height[0] + s->height[1]) / 2;
@@ -107,18 +118,18 @@ static double pixels_of(const patch_view *v, const gtx_slab *s)
     }
     above -= v->eye[3] * middle;
     for (int r = 0; r < 3; ++r) {
-        const double d = at(v->toward[r], grid);
+        const double d = at(to->toward[r], grid);
         away += d * d;
     }
     const double w = at(v->w, grid);
-    const double area = v->scale * (s->high[0] - s->low[0]) * (s->high[1] - s->low[1]);
+    const double area = to->scale * (s->high[0] - s->low[0]) * (s->high[1] - s->low[1]);
     const double square = sqrt(away) * w * w;
     return area * fabs(above) / (square > 1e-300 ? square : 1e-300);
 }
 
 /* Whether the eye e may be above the plane of any of its triangles. Above that through p, which is
  * h above the slab's slope, it is e.z - slope e.xy - w h - rise (e.xy - w p.xy). */
-static bool may_face(const patch_view *v, const gtx_slab *s)
+static inline bool may_face(const patch_view *v, const gtx_slab *s)
 {
     const double *e = v->eye;
     double above = e[2] - s->slope[0] * e[0] - s->slope[1] * e[1] - e[3] * s->height[0];
@@ -127,7 +138,7 @@ static bool may_face(const patch_view *v, const gtx_slab *s)
     return above >= 0;
 }
 
-static bool is_seen(const patch_view *v, const gtx_slab *s)
+static inline bool is_seen(const patch_view *v, const gtx_slab *s)
 {
     return s->low[0] <= s->high[0] && is_in_view(v, s) && (v->two_sided || may_face(v, s));
 }
@@ -152,6 +163,7 @@ gtx_cover gtx_cover_of(const gtx_frustum *f, const gtx_model *model, uint32_t pa
     const patch_view v = view_of(f, model, patch);
     const gtx_slab *slabs = model->slabs + model->first_slab[patch];
     const uint32_t count = model->first_slab[patch + 1] - model->first_slab[patch];
+    const patch_scale to = scale_of(f, model, patch);
     gtx_patch_view over = {0};
     gtx_cover c = {0, 0, false};
     if (occlusion)
@@ -160,7 +172,7 @@ gtx_cover gtx_cover_of(const gtx_frustum *f, const gtx_model *model, uint32_t pa
         if (!is_seen(&v, &slabs[i]) ||
             (occlusion && gtx_is_slab_hidden(occlusion, &over, &slabs[i])))
             continue;
-        c.pixels += lesser(pixels_of(&v, &slabs[i]), most);
+        c.pixels += lesser(pixels_of(&v, &to, &slabs[i]), most);
         shown[c.blocks++] = i;
     }
     return c;

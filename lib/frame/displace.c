@@ -75,8 +75,10 @@ static void add(gtx_grids *grids, const gtx_model *model, const gtx_plan_entry *
     const uint32_t cells = (((uint32_t)record[GTX_RECORD_RECT][2] - 2) >> entry->level) + 1;
     const uint32_t columns = (cells - 1) / GTX_SLAB_CELLS + 1;
     const uint32_t sides = record[GTX_RECORD_TWO_SIDED][3] > 0 ? GTX_BLOCKS_TWO_SIDED : 0;
-    for (uint32_t i = 0; i < count; ++i) {
-        const uint32_t x = shown[i] % columns, y = shown[i] / columns;
+    for (uint32_t i = 0, y = 0; i < count; ++i) {
+        while (shown[i] >= (y + 1) * columns)
+            ++y;
+        const uint32_t x = shown[i] - y * columns;
         const gtx_rtin_block b = merged(model, patch, entry->level, x, y);
         const uint32_t look = sides | (b.whole == UINT16_MAX ? 0 : GTX_BLOCKS_TRIMMED);
         gtx_displaced_block *blocks = grids->blocks[look].data;

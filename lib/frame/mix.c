@@ -94,6 +94,61 @@ static double cost_of_all(const gtx_draw_call *draw, const gtx_frustum *f, const
     return beside ? DBL_MAX : cast_cost(draw, model, plan->count, fmin(pixels, most));
 }
 
+/* Triangles of a patch that is halved to an error: each middle ends two on either side. Between
+ * what is counted they grow evenly. */
+static double triangles_of(const gtx_rtin *rtin, double error)
+{
+    int exponent = 0;
+    const double units = rtin->unit > 0 ? error / (double)rtin->unit : GTX_RTIN_MAX_ERROR;
+    const double share = 2 * frexp(fmin(fmax(units, 1), GTX_RTIN_MAX_ERROR), &exponent) - 1;
+    const uint32_t *halved = &rtin->halved[exponent - 1];
+    return 2 * ((1 - share) * halved[0] + share * halved[1]);
+}
+
+/* Pixels that a patch covers toward the eye, as seen from its middle, where w is what it is; below
+ * 0 from behind. */
+static double pixels_of(const gtx_frustum *f, const gtx_patch_facts *facts, double w)
+{
+    double toward = 0, square = 0;
+    for (int k = 0; k < 3; ++k) {
+        const double d = f->eye[k] - f->eye[3] * facts->sphere[k];
+        toward += d * facts->area[k];
+        square += d * d;
+    }
+    return f->pixels * f->pixels * toward / (sqrt(square) * w * w);
+}
+
+/* Grids that are thought to take so many times what casting does, by sums of each patch, are not
+ * looked at. In 12,280 views of a dragon that draw grids it is up to 0.72; in two thirds of 5,184
+ * that do not it is more than 1, in a quarter more than 1.8. */
+static const double surely_cast = 1;
+
+/* Whether casting all is sure to take less. Patches that are not in view as a whole may take
+ * nothing. */
+static bool is_surely_cast(const gtx_draw_call *draw, const gtx_frustum *f, const gtx_model *model)
+{
+    const gtx_plan *plan = &draw->planner->plan;
+    const double patch_cost = cast_cost(draw, model, 1, 0), pixel = cast_cost(draw, model, 0, 1);
+    const double triangle = gtx_grid_cost(draw, 1, 0), of_grid = gtx_grid_cost(draw, 0, 1);
+    double pixels = 0, grids = 0;
+    for (uint32_t i = 0; i < plan->count; ++i) {
+        const uint32_t patch = plan->entries[i].patch;
+        const gtx_patch_facts *facts = &model->facts[patch];
+        const double w = gtx_plane_at(&f->w, facts->sphere);
+        const bool two_sided = model->records[patch][GTX_RECORD_TWO_SIDED][3] > 0;
+        if (gtx_is_before_near(f, facts->hull) || w <= 2 * f->w.slope * (double)facts->sphere[3])
+            return false;
+        const double seen = pixels_of(f, facts, w);
+        const double covered = nearest_share * (two_sided ? fabs(seen) : fmax(seen, 0));
+        pixels += covered;
+        if (covered > 0 && !gtx_is_cut(f, facts->hull))
+            grids += fmin(among_grids[two_sided] * (patch_cost + pixel * covered / nearest_share),
+                          of_grid * covered + triangle * triangles_of(&model->rtins[patch],
+                                                                      w / f->scale));
+    }
+    return f->level < 0 && grids > surely_cast * (patch_cost * plan->count + pixel * pixels);
+}
+
 /* Room for the slots and blocks of any one patch. */
 static bool reserve_patch(gtx_planner *planner, const gtx_model *model)
 {
@@ -236,6 +291,8 @@ bool gtx_blocks_fill(const gtx_draw_call *draw, const gtx_model *model,
     empty_to(grids, &nothing);
     if (f.two || !covers || !plan->count || !reserve_patch(planner, model))
         return false; /* blocks are culled for one eye */
+    if (draw->view->method != GTX_METHOD_GRID && is_surely_cast(draw, &f, model))
+        return false;
     gtx_occlusion_begin(&planner->occlusion, draw, model, placed);
     if (draw->view->method == GTX_METHOD_GRID) {
         all_grids(draw, &f, model, covers);

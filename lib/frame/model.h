@@ -53,6 +53,8 @@ typedef struct gtx_patch_facts {
     float error[GTX_MAX_MIPS]; /* of each level, as gtx_grid_error has it, never falling */
     float twist[GTX_MAX_MIPS]; /* how far two triangles are from a cell of it, at most, as errors
                                   count; never falling, 0 at level 0 */
+    float area[3];            /* of the blocks' planes, as a vector: toward an eye far away it is
+                                 what they cover, if all face it */
     bool boxed;               /* too large for hulls, or edited ones outgrew their room: cast by the
                                  box instead */
 } gtx_patch_facts;

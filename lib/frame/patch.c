@@ -128,6 +128,35 @@ static gtx_result derive_level(const gtx_asset *asset, uint32_t patch, gtx_grid 
     return result;
 }
 
+/* The planes of the blocks of level 0 as one vector. */
+static void fill_area(const gtx_patch *patch, const gtx_derived *d, float area[3])
+{
+    const float *axis[3] = {d->record[GTX_RECORD_AXIS_X], d->record[GTX_RECORD_AXIS_Y],
+                            d->record[GTX_RECORD_AXIS_Z]};
+    double cells = 0, tilted[2] = {0, 0}, volume = 0;
+    for (uint32_t i = 0; i < gtx_slab_count(patch, 0); ++i) {
+        const gtx_slab *s = &d->slabs[0][i];
+        if (s->low[0] > s->high[0])
+            continue;
+        const double size = ((double)s->high[0] - s->low[0]) * ((double)s->high[1] - s->low[1]);
+        cells += size;
+        tilted[0] += size * s->slope[0];
+        tilted[1] += size * s->slope[1];
+    }
+    for (int k = 0; k < 3; ++k) {
+        const int a = (k + 1) % 3, b = (k + 2) % 3;
+        double cross[3];      /* x by y, y by z, z by x */
+        for (int i = 0; i < 3; ++i) {
+            const float *p = axis[i], *q = axis[(i + 1) % 3];
+            cross[i] = (double)p[a] * q[b] - (double)p[b] * q[a];
+        }
+        area[k] = (float)(cells * cross[0] - tilted[0] * cross[1] - tilted[1] * cross[2]);
+        volume += cross[0] * axis[2][k];
+    }
+    for (int k = 0; k < 3 && volume < 0; ++k)
+        area[k] = -area[k];
+}
+
 /* Of an asset that has no heights. */
 static gtx_result derive_bare(const gtx_asset *asset, uint32_t patch, gtx_derived *out)
 {
@@ -184,6 +213,8 @@ gtx_result gtx_patch_derive(const gtx_asset *asset, uint32_t patch, const gtx_al
     if (!result) /* last, for errors are measured against what is not trimmed */
         result = derive_level(asset, patch, &finest, allocator, out, error);
     const gtx_rtin_source source = {asset, patch, &finest, filled, out->slabs[0]};
+    if (!result)
+        fill_area(p, out, out->facts.area);
     if (!result)
         result = gtx_rtin_build(&source, allocator, &out->rtin, out->nodes, out->blocks, error);
     gtx_free_array(allocator, filled, (size_t)finest.nodes_x * finest.nodes_y, sizeof *filled);
