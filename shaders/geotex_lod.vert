@@ -84,6 +84,7 @@ GTX_VARYING(4) flat out vec4 gtx_between;   /* what gtx_half_way says there */
 #else
 #ifdef GTX_VERTEX_NORMALS
 GTX_VARYING(2) out vec3 gtx_normal;         /* world space; of the front */
+GTX_VARYING(3) flat out vec2 gtx_behind;    /* from behind: how often that, and how often the ray */
 #else
 GTX_VARYING(2) flat out vec3 gtx_normal_x;  /* the patch's normals -> world */
 GTX_VARYING(3) flat out vec3 gtx_normal_y;
@@ -279,6 +280,9 @@ void main()
     gtx_ray = gtx_to_world(object.xyz * gtx_depth.w - eye);
 #ifndef GTX_BLOCKS
     gtx_ray = normalize(gtx_ray);
+#endif
+#ifdef GTX_VERTEX_NORMALS
+    gtx_behind = gtx_turned(gtx_normal, gtx_ray);
 #endif
     gtx_patch_index = index;
     gtx_id = gtx_instance;

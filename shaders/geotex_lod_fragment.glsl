@@ -8,6 +8,7 @@ GTX_VARYING(0) in vec2 gtx_at;
 GTX_VARYING(1) flat in vec3 gtx_page;
 #ifdef GTX_VERTEX_NORMALS
 GTX_VARYING(2) in vec3 gtx_normal;
+GTX_VARYING(3) flat in vec2 gtx_behind;
 #else
 GTX_VARYING(2) flat in vec3 gtx_normal_x;
 GTX_VARYING(3) flat in vec3 gtx_normal_y;
@@ -98,11 +99,13 @@ vec3 gtx_world_normal(gtx_surface s)
 {
 #ifdef GTX_VERTEX_NORMALS
     vec3 n = normalize(gtx_normal);
+    vec2 turned = gl_FrontFacing ? vec2(1.0, 0.0) : gtx_behind;
+    return n * turned.x + gtx_sight() * turned.y;
 #else
     vec3 p = gtx_decode_normal(textureLod(gtx_normals, gtx_place(), gtx_page.y).xy);
     vec3 n = normalize(gtx_normal_x * p.x + gtx_normal_y * p.y + gtx_normal_z * p.z);
-#endif
     return gl_FrontFacing ? n : gtx_from_behind(n, gtx_sight());
+#endif
 }
 
 vec4 gtx_albedo(gtx_surface s)

@@ -80,6 +80,10 @@ float gtx_diffuse(float nl, float nv, float lv, float deviation)
 /* All are unit and in one space. */
 float gtx_diffuse(vec3 n, vec3 eye, vec3 light, float deviation)
 {
+#if defined(GTX_VERTEX_NORMALS) && !defined(GTX_GRID)
+    if (deviation == GTX_LEAST_DEVIATION)
+        return max(dot(n, light), 0.0);
+#endif
     float inverse = 1.0 / deviation;
     return gtx_diffuse(dot(n, light) * inverse, dot(n, eye) * inverse, dot(light, eye), deviation);
 }
@@ -114,6 +118,13 @@ vec3 gtx_from_behind(vec3 n, vec3 ray)
 {
     float away = max(dot(n, ray), 0.0);
     return mix(n - 2.0 * away * ray, -n, smoothstep(0.0, GTX_RIM, away));
+}
+
+/* The same as the shares of n and of the ray. */
+vec2 gtx_turned(vec3 n, vec3 ray)
+{
+    float away = max(dot(n, ray), 0.0), behind = smoothstep(0.0, GTX_RIM, away);
+    return vec2(1.0 - 2.0 * behind, -2.0 * away * (1.0 - behind));
 }
 
 /* x^(1 / 2.4) by its fourth root, within a tenth of a byte from 0.003 to 1: two square roots and a
