@@ -61,13 +61,16 @@ static inline GLuint rhi_pipeline(const rhi *r, uint32_t number)
 static inline void rhi_bind_vertices(const rhi *r, GLuint vertices, GLuint instances,
                                      const gtx_frame_draw *d)
 {
-    if (d->vertices == GTX_BUFFER_PROXY_VERTICES) {
-        rhi_attribute(r, 0, vertices, 3, GL_FLOAT, 16, d->vertex_offset, 0);
-        rhi_attribute(r, 1, vertices, 1, GL_UNSIGNED_INT, 16, d->vertex_offset + 12, 0);
-    } else {
-        rhi_attribute(r, 0, vertices, 4, GL_UNSIGNED_SHORT, 12, d->vertex_offset, 0);
-        rhi_attribute(r, 1, vertices, 1, GL_UNSIGNED_INT, 12, d->vertex_offset + 8, 0);
-    }
+    const GLsizei size = (GLsizei)d->vertex_size;
+    if (d->vertices == GTX_BUFFER_PROXY_VERTICES)
+        rhi_attribute(r, 0, vertices, 3, GL_FLOAT, size, d->vertex_offset, 0);
+    else
+        rhi_attribute(r, 0, vertices, 4, GL_UNSIGNED_SHORT, size, d->vertex_offset, 0);
+    if (size == 8)
+        rhi_attribute(r, 1, vertices, 1, GL_UNSIGNED_SHORT, size, d->vertex_offset + 6, 0);
+    else
+        rhi_attribute(r, 1, vertices, 1, GL_UNSIGNED_INT, size,
+                      d->vertex_offset + d->vertex_size - 4, 0);
     const uint64_t first = d->first_instance * sizeof(gtx_instance_data);
     for (GLuint k = 0; k < 7; ++k)
         rhi_attribute(r, 2 + k, instances, 4, GL_FLOAT, sizeof(gtx_instance_data),

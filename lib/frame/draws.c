@@ -43,6 +43,7 @@ static void cast_ranges(const gtx_draw_call *call, const run *r, bool box, uint3
     draw.vertices = GTX_BUFFER_PROXY_VERTICES;
     draw.indices = GTX_BUFFER_PROXY_INDICES;
     draw.index_size = r->model->proxy_index_size;
+    draw.vertex_size = sizeof(gtx_proxy_vertex);
     draw.ranges = ranges;
     draw.range_count = range_count;
     if (range_count)
@@ -80,8 +81,9 @@ static bool cast_tiles(const gtx_draw_call *call, const run *r, uint32_t instanc
     gtx_frame_draw draw = draw_of(call, r, technique, instance, 1);
     draw.vertices = GTX_BUFFER_TILE_CORNERS;
     draw.index_size = 0;
+    draw.vertex_size = 4;
     draw.vertex_data = tiles->corners.data;
-    draw.vertex_bytes = 4ull * tiles->corner_count;
+    draw.vertex_bytes = (uint64_t)draw.vertex_size * tiles->corner_count;
     draw.ranges = &corners;
     draw.range_count = 1;
     draw.tiles = &stream;
@@ -120,6 +122,7 @@ static void draw_side(const gtx_draw_call *call, const run *r, uint32_t level,
     draw.cull = cull;
     draw.vertices = GTX_BUFFER_LOD_VERTICES;
     draw.indices = GTX_BUFFER_LOD_INDICES;
+    draw.vertex_size = l->vertex_size;
     draw.vertex_offset = l->vertex_offset;
     draw.index_offset = l->index_offset;
     draw.index_size = l->index_size;
@@ -169,8 +172,9 @@ static void draw_grids(const gtx_draw_call *call, const run *r, uint32_t instanc
         draw.indices = GTX_BUFFER_GRID_INDICES;
         draw.ranges = &all;
         draw.range_count = 1;
+        draw.vertex_size = sizeof(gtx_grid_vertex);
         draw.vertex_data = vertices;
-        draw.vertex_bytes = vertices ? grids->vertex_count * sizeof(gtx_grid_vertex) : 0;
+        draw.vertex_bytes = vertices ? (uint64_t)grids->vertex_count * draw.vertex_size : 0;
         draw.index_data = grids->indices[looks].data;
         draw.index_bytes = all.count * sizeof(uint32_t);
         const float behind[4] = {looks & GTX_GRID_BEHIND ? 1.0f : 0.0f, 0, 0, 0};
@@ -198,7 +202,8 @@ static void draw_blocks(const gtx_draw_call *call, const run *r, uint32_t instan
         draw.ranges = &whole;
         draw.range_count = 1;
         draw.vertex_data = grids->blocks[look].data;
-        draw.vertex_bytes = count * sizeof(gtx_displaced_block);
+        draw.vertex_size = sizeof(gtx_displaced_block);
+        draw.vertex_bytes = (uint64_t)count * draw.vertex_size;
         draw.index_data = grids->block_indices;
         draw.index_bytes = sizeof grids->block_indices;
         grids->drawn += (uint64_t)count * GTX_BLOCK_TRIANGLES;

@@ -85,10 +85,22 @@ static uint16_t normal_of(const gtx_lod_mesh *source, uint32_t vertex)
     return n ? (uint16_t)(n[0] | n[1] << 8) : 0;
 }
 
+static void store_vertex(const gtx_lod_meshes *lods, const gtx_lod_level *level, uint32_t at,
+                         const gtx_lod_mesh *source, uint32_t vertex, uint32_t patch)
+{
+    uint8_t *out = lods->vertices + level->vertex_offset + (size_t)at * level->vertex_size;
+    const uint16_t *q = source->positions + 3 * (size_t)vertex;
+    const gtx_lod_vertex wide = {{q[0], q[1], q[2]}, normal_of(source, vertex), patch};
+    const gtx_lod_narrow_vertex narrow = {{q[0], q[1], q[2]}, (uint16_t)patch};
+    if (level->vertex_size == sizeof wide)
+        memcpy(out, &wide, sizeof wide);
+    else
+        memcpy(out, &narrow, sizeof narrow);
+}
+
 /* Writes copies and indices in drawing order, of each patch the triangles at its border last. */
 static void split(const gtx_lod_meshes *lods, gtx_lod_level *level, const gtx_lod_mesh *source)
 {
-    gtx_lod_vertex *vertices = lods->vertices + level->vertex_offset / sizeof *vertices;
     uint32_t count = 0, met = 0;
     level->run_count = 0;
     for (uint32_t i = 0; i < lods->patch_count; ++i) {
@@ -104,10 +116,8 @@ static void split(const gtx_lod_meshes *lods, gtx_lod_level *level, const gtx_lo
                     const uint32_t c = corners[lods->first_provokes ? (k + 2) % 3 : k];
                     const uint32_t before = count;
                     const gtx_lod_copy *s = copy_of(level, c, patch, &count);
-                    const uint16_t *q = source->positions + 3 * (size_t)c;
                     if (count > before)
-                        vertices[s->index] = (gtx_lod_vertex){
-                            {q[0], q[1], q[2]}, normal_of(source, c), patch};
+                        store_vertex(lods, level, s->index, source, c, patch);
                     store_index(lods, level, met++, s->index - run->first_vertex);
                 }
             }
@@ -192,7 +202,11 @@ void gtx_lod_measure(const gtx_asset *asset, uint32_t k, const gtx_allocator *al
     for (uint32_t r = 0; r < level->run_count; ++r)
         if (level->runs[r].vertex_count > MAX_NARROW_VERTICES)
             level->index_size = 4;
-    level->vertex_bytes = count * (uint64_t)sizeof *out->vertices;
+    level->vertex_size =
+        gtx_lod_may_be_lit(asset, k, level) || out->patch_count > UINT16_MAX
+            ? sizeof(gtx_lod_vertex)
+            : sizeof(gtx_lod_narrow_vertex);
+    level->vertex_bytes = count * (uint64_t)level->vertex_size;
     if (k == 0 && !gtx_lod_find_neighbours(&source, count, allocator, out))
         level->result = GTX_ERROR_MEMORY;
 }

@@ -10,9 +10,14 @@
 /* A vertex on a border between patches is stored once for each of them. */
 typedef struct gtx_lod_vertex {
     uint16_t position[3];
-    uint16_t normal;          /* octahedral, where the level may be lit by it */
+    uint16_t normal;          /* octahedral */
     uint32_t patch;
 } gtx_lod_vertex;
+
+/* The same of levels that are never lit by normals, where patches have few numbers. */
+typedef struct gtx_lod_narrow_vertex {
+    uint16_t position[3], patch;
+} gtx_lod_narrow_vertex;
 
 /* Consecutive patches with vertices of their own, few enough to be one draw: llvmpipe then takes
  * indices as they are and shades each vertex once. */
@@ -32,6 +37,7 @@ typedef struct gtx_lod_level {
     gtx_lod_run *runs;        /* room for a patch each; indices count from a run's first vertex */
     uint32_t run_count;
     uint32_t index_size;      /* bytes */
+    uint32_t vertex_size;     /* of either kind */
     uint64_t vertex_offset, index_offset;
     uint64_t vertex_bytes;
     uint32_t source_vertices; /* in the asset's level */
@@ -53,8 +59,7 @@ typedef struct gtx_lod_meshes {
      * neighbours[first_neighbour[i]]..neighbours[first_neighbour[i + 1] - 1]. */
     uint32_t *first_neighbour, *neighbours;
     uint32_t neighbour_count;
-    gtx_lod_vertex *vertices;     /* both freed once they are uploaded */
-    uint8_t *indices;
+    uint8_t *vertices, *indices;  /* both freed once they are uploaded */
     uint64_t vertex_bytes, index_bytes, vertex_bytes_sent, index_bytes_sent;
     uint32_t vertex_buffer, index_buffer; /* names in OpenGL */
 } gtx_lod_meshes;
@@ -69,7 +74,9 @@ void gtx_lod_measure(const gtx_asset *asset, uint32_t level, const gtx_allocator
 gtx_result gtx_lod_place(const gtx_allocator *allocator, gtx_lod_meshes *out, gtx_error *error);
 void gtx_lod_fill(const gtx_asset *asset, uint32_t level, const gtx_allocator *allocator,
                   gtx_lod_meshes *out);
-/* lod_normals.c: of a filled level: normals of its vertices, and whether they are enough. */
+/* lod_normals.c: whether a level may be lit by normals of its vertices; and of one that is filled
+ * these, and whether they are enough. */
+bool gtx_lod_may_be_lit(const gtx_asset *asset, uint32_t level, const gtx_lod_level *of);
 void gtx_lod_light(const gtx_asset *asset, uint32_t level, gtx_lod_meshes *out);
 /* lod_neighbours.c: of a model's finest level; `meetings` counts its vertices once for each patch
  * that has them. False without memory. */

@@ -101,6 +101,11 @@ static void point_of(const gtx_lod_level *level, const gtx_lod_vertex *v, double
         out[k] = (double)level->place[k] + (double)level->place[3] * v->position[k];
 }
 
+static gtx_lod_vertex *vertices_of(const gtx_lod_meshes *lods, const gtx_lod_level *level)
+{
+    return (gtx_lod_vertex *)(void *)(lods->vertices + level->vertex_offset);
+}
+
 static const gtx_lod_vertex *corner_of(const gtx_lod_meshes *lods, const gtx_lod_level *level,
                                        const gtx_lod_run *run, uint32_t at)
 {
@@ -112,8 +117,7 @@ static const gtx_lod_vertex *corner_of(const gtx_lod_meshes *lods, const gtx_lod
         memcpy(&wide, index, sizeof wide);
     else
         wide = narrow;
-    return lods->vertices + level->vertex_offset / sizeof *lods->vertices + run->first_vertex +
-           wide;
+    return vertices_of(lods, level) + run->first_vertex + wide;
 }
 
 /* Adds the square of the angle in a triangle's middle, by its area. */
@@ -173,20 +177,28 @@ static double texel_of(const gtx_asset *asset)
     return sqrt(area / texels);
 }
 
-void gtx_lod_light(const gtx_asset *asset, uint32_t k, gtx_lod_meshes *lods)
+/* Coarser levels are seen from so far that maps have to be averaged. What a file's beginning has
+ * for maps is made of the mesh. */
+bool gtx_lod_may_be_lit(const gtx_asset *asset, uint32_t k, const gtx_lod_level *level)
 {
-    gtx_lod_level *level = &lods->levels[k];
-    gtx_lod_vertex *first = lods->vertices + level->vertex_offset / sizeof *first;
-    gtx_lod_vertex *end = first + level->vertex_bytes / sizeof *first;
     const gtx_info *info = &asset->info;
     gtx_lod_mesh source;
     gtx_get_lod_mesh(asset, k, &source);
-    /* Coarser levels are seen from so far that maps have to be averaged. What a file's beginning
-     * has for maps is made of the mesh. */
-    if (k > 0 || info->has_color || info->has_material || info->has_emission || level->far ||
-        (asset->bare ? !source.normals
-                     : level->triangle_count < least_share * (double)info->source_triangles))
+    return k == 0 && !info->has_color && !info->has_material && !info->has_emission &&
+           !level->far &&
+           (asset->bare ? source.normals != NULL
+                        : level->triangle_count >= least_share * (double)info->source_triangles);
+}
+
+void gtx_lod_light(const gtx_asset *asset, uint32_t k, gtx_lod_meshes *lods)
+{
+    gtx_lod_level *level = &lods->levels[k];
+    gtx_lod_mesh source;
+    gtx_get_lod_mesh(asset, k, &source);
+    if (!gtx_lod_may_be_lit(asset, k, level))
         return;
+    gtx_lod_vertex *first = vertices_of(lods, level);
+    gtx_lod_vertex *end = first + level->vertex_bytes / sizeof *first;
     uint32_t patch = lods->patch_count;
     look_place at = {.patch = NULL};
     for (gtx_lod_vertex *v = first; v < end && !source.normals; ++v) {

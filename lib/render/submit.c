@@ -123,14 +123,17 @@ static void draw_proxies(const gtx_gl *gl, const gtx_frame_draw *draw)
 static void draw_lods(const gtx_gl *gl, const gtx_frame_draw *draw, bool instances)
 {
     const gl_enum type = draw->index_size == 2 ? GL_UNSIGNED_SHORT : GL_UNSIGNED_INT;
+    const bool narrow = draw->vertex_size == sizeof(gtx_lod_narrow_vertex);
+    const gl_enum patch_type = narrow ? GL_UNSIGNED_SHORT : GL_UNSIGNED_INT;
+    const size_t patch_at = narrow ? offsetof(gtx_lod_narrow_vertex, patch)
+                                   : offsetof(gtx_lod_vertex, patch);
+    const gl_size size = (gl_size)draw->vertex_size;
     for (const gtx_range *r = draw->ranges; r < draw->ranges + draw->range_count; ++r) {
         const void *indices = gtx_gl_offset(draw->index_offset + r->first * draw->index_size);
         const uint64_t vertex =
-            draw->vertex_offset + r->base_vertex * (uint64_t)sizeof(gtx_lod_vertex);
-        gl->VertexAttribPointer(0, 4, GL_UNSIGNED_SHORT, GL_FALSE, sizeof(gtx_lod_vertex),
-                                gtx_gl_offset(vertex));
-        gl->VertexAttribIPointer(1, 1, GL_UNSIGNED_INT, sizeof(gtx_lod_vertex),
-                                 gtx_gl_offset(vertex + offsetof(gtx_lod_vertex, patch)));
+            draw->vertex_offset + r->base_vertex * (uint64_t)draw->vertex_size;
+        gl->VertexAttribPointer(0, 4, GL_UNSIGNED_SHORT, GL_FALSE, size, gtx_gl_offset(vertex));
+        gl->VertexAttribIPointer(1, 1, patch_type, size, gtx_gl_offset(vertex + patch_at));
         if (instances)
             gl->DrawElementsInstanced(GL_TRIANGLES, (gl_size)r->count, type, indices,
                                       (gl_size)draw->instance_count);

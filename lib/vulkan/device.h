@@ -91,7 +91,8 @@ enum { GTX_VK_VERTEX, GTX_VK_FRAGMENT, GTX_VK_VERTEX_TWO, GTX_VK_FRAGMENT_SAMPLE
 /* What a pipeline is made for: all of it is compared, byte by byte. */
 typedef struct gtx_vk_key {
     gtx_vk_target target;
-    uint32_t pipeline, cull, clockwise, nearer_is_greater, by_samples;
+    uint32_t pipeline, cull, clockwise, nearer_is_greater;
+    uint16_t by_samples, vertex_size; /* no padding: keys are compared by their bytes */
     uint32_t shading;         /* its number, or 0 */
 } gtx_vk_key;
 

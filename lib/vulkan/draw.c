@@ -120,6 +120,7 @@ static gtx_result bind_pipeline(recording *r, const gtx_frame_draw *d)
     VkPipeline pipeline = VK_NULL_HANDLE;
     r->key.pipeline = d->pipeline;
     r->key.cull = d->cull;
+    r->key.vertex_size = (uint16_t)d->vertex_size;
     r->key.clockwise = d->clockwise == r->key.target.y_up; /* seen in a picture with y down */
     gtx_result result = gtx_vk_pipeline_of(r->vk, &r->key, r->shading, &pipeline, r->error);
     if (!result && pipeline != r->pipeline)

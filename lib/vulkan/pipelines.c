@@ -84,32 +84,31 @@ static gtx_result module_of(gtx_vk *vk, uint32_t pipeline, uint32_t which, VkSha
 
 /* Of vertices of a buffer at binding 0, and of instances at binding 1; tiles have a corner alone.
  * Blocks are instances themselves, all placed as the same one. Returns the number of attributes. */
-static uint32_t set_attributes(gtx_buffer vertices, VkVertexInputBindingDescription bindings[2],
+static uint32_t set_attributes(gtx_buffer vertices, uint32_t size,
+                               VkVertexInputBindingDescription bindings[2],
                                VkVertexInputAttributeDescription attributes[ATTRIBUTES])
 {
     const bool proxy = vertices == GTX_BUFFER_PROXY_VERTICES;
-    const bool blocks = vertices == GTX_BUFFER_BLOCKS;
+    const bool blocks = vertices == GTX_BUFFER_BLOCKS, narrow = size == 8;
     uint32_t count = 0;
     enum { ROWS = 7, ID = 9 };
-    bindings[0] = (VkVertexInputBindingDescription){0, proxy ? 16 : 12,
-                                                    VK_VERTEX_INPUT_RATE_VERTEX};
+    bindings[0] = (VkVertexInputBindingDescription){0, size, VK_VERTEX_INPUT_RATE_VERTEX};
     bindings[1] = (VkVertexInputBindingDescription){1, sizeof(gtx_instance_data),
                                                     VK_VERTEX_INPUT_RATE_INSTANCE};
     if (vertices == GTX_BUFFER_TILE_CORNERS) {
-        bindings[0].stride = 4;
         attributes[0] = (VkVertexInputAttributeDescription){0, 0, VK_FORMAT_R16G16_UINT, 0};
         return 1;
     }
     if (blocks) {
-        bindings[0] = (VkVertexInputBindingDescription){0, 8, VK_VERTEX_INPUT_RATE_INSTANCE};
+        bindings[0].inputRate = VK_VERTEX_INPUT_RATE_INSTANCE;
         bindings[1].stride = 0;
         attributes[count++] =
             (VkVertexInputAttributeDescription){0, 0, VK_FORMAT_R32G32_UINT, 0};
     } else {
         attributes[count++] = (VkVertexInputAttributeDescription){
             0, 0, proxy ? VK_FORMAT_R32G32B32_SFLOAT : VK_FORMAT_R16G16B16A16_UINT, 0};
-        attributes[count++] =
-            (VkVertexInputAttributeDescription){1, 0, VK_FORMAT_R32_UINT, proxy ? 12 : 8};
+        attributes[count++] = (VkVertexInputAttributeDescription){
+            1, 0, narrow ? VK_FORMAT_R16_UINT : VK_FORMAT_R32_UINT, narrow ? 6 : size - 4};
     }
     for (uint32_t i = 0; i < ROWS; ++i)
         attributes[count++] =
@@ -190,7 +189,8 @@ static gtx_result make(gtx_vk *vk, const gtx_vk_key *key, const gtx_vk_shading *
     const gtx_result result = set_stages(vk, key, shading, &of, stages, error);
     if (result)
         return result;
-    const uint32_t attribute_count = set_attributes(of.vertices, bindings, attributes);
+    const uint32_t attribute_count = set_attributes(of.vertices, key->vertex_size, bindings,
+                                                    attributes);
     for (uint32_t i = 0; i < OUTPUTS; ++i)
         outputs[i] = (VkPipelineColorBlendAttachmentState){
             .colorWriteMask = of.pass == GTX_PASS_DEPTH ? 0 : 15};

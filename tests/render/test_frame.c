@@ -167,7 +167,8 @@ static void check(const gtx_frame_draw *d, void *user)
         assert_true(r->count > 0 && r->count % 3 == 0);
         assert_true(d->index_offset + (r->first + (uint64_t)r->count) * d->index_size <= indices);
         if (d->vertices == GTX_BUFFER_LOD_VERTICES)
-            assert_true(d->vertex_offset + 12 * (r->base_vertex + (uint64_t)r->vertex_count) <=
+            assert_true(d->vertex_offset +
+                            d->vertex_size * (r->base_vertex + (uint64_t)r->vertex_count) <=
                         sizes[d->vertices]);
     }
 }
