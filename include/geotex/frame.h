@@ -137,8 +137,7 @@ GTX_API uint32_t gtx_model_texture(const gtx_model *model, gtx_slot slot, gtx_te
 typedef enum gtx_buffer {
     GTX_BUFFER_PROXY_VERTICES = 0,    /* 16 bytes: 3 floats; a uint32_t */
     GTX_BUFFER_PROXY_INDICES = 1,
-    GTX_BUFFER_LOD_VERTICES = 2,      /* 4 uint16_t, as integers; of 12 bytes: a uint32_t, of 8:
-                                         the last uint16_t again (gtx_frame_draw.vertex_size) */
+    GTX_BUFFER_LOD_VERTICES = 2,      /* 4 uint16_t, as integers; a uint32_t, or of 8: the 4th */
     GTX_BUFFER_LOD_INDICES = 3,
     GTX_BUFFER_GRID_VERTICES = 4,     /* as LOD_VERTICES of 12 bytes */
     GTX_BUFFER_GRID_INDICES = 5,
@@ -262,8 +261,7 @@ typedef struct gtx_frame_draw {
     const gtx_constants *constants;
     gtx_buffer vertices, indices;
     uint64_t vertex_offset, index_offset; /* bytes: where vertex 0 and index 0 are */
-    uint32_t vertex_size;             /* bytes */
-    uint32_t index_size;              /* bytes, 2 or 4; 0: not indexed, ranges are of vertices */
+    uint32_t vertex_size, index_size; /* bytes; 2 or 4, or 0: not indexed, ranges are of vertices */
     uint32_t range_count;
     const gtx_range *ranges;
     /* Of buffers that are not the model's. NULL vertex_data: that of the draw before. */

@@ -309,22 +309,6 @@ static void measure(const making *m, const gtx_rtin_source *source, gtx_rtin_blo
     gtx_rtin_add_twist(source->finest, m->rtin, m->nodes, m->error);
 }
 
-/* Of every fifth node, so that all levels have their share: looking at all takes a 25th of the time
- * in which a model is prepared. After they are marked. */
-static void count_halved(gtx_rtin *rtin, const gtx_rtin_node *nodes, size_t count)
-{
-    enum { EVERY = 5 };
-    for (size_t i = 0; i < count; i += EVERY) {
-        const uint32_t error = nodes[i].bits & GTX_RTIN_MAX_ERROR;
-        const uint32_t upper = 7 * (error > 127), rest = error >> upper;
-        if (error && nodes[i].bits & GTX_RTIN_WITHIN)
-            rtin->halved[upper + (rest > 1) + (rest > 3) + (rest > 7) + (rest > 15) +
-                         (rest > 31) + (rest > 63)] += EVERY;
-    }
-    for (uint32_t k = GTX_RTIN_ERRORS - 1; k-- > 0;)
-        rtin->halved[k] += rtin->halved[k + 1];
-}
-
 size_t gtx_rtin_nodes(const gtx_patch *patch)
 {
     const size_t columns = (patch->rect[2] - 2u) / CELLS + 1;
@@ -351,7 +335,6 @@ gtx_result gtx_rtin_build(const gtx_rtin_source *source, const gtx_allocator *al
         gather(&m, level);
     store_errors(&m, count);
     gtx_rtin_mark(source, out, nodes, m.error);
-    count_halved(out, nodes, count);
     gtx_free_array(allocator, m.error, count, sizeof *m.error);
     return GTX_OK;
 }

@@ -106,8 +106,8 @@ static inline uint32_t gtx_rtin_twist(const gtx_rtin_node *node, size_t row)
 void gtx_rtin_add_twist(const gtx_grid *finest, gtx_rtin *rtin, const gtx_rtin_node *nodes,
                         float *error);
 
-/* marks.c: what nodes tell besides their errors, and whether the patch is glossy. `scratch`
- * has room for a number a node. */
+/* marks.c: what nodes tell besides their errors, how many there are of these, and whether the patch
+ * is glossy. `scratch` has room for a number a node. */
 void gtx_rtin_mark(const gtx_rtin_source *source, gtx_rtin *rtin, gtx_rtin_node *nodes,
                    float *scratch);
 
