@@ -31,21 +31,27 @@ static void link_ends(gtx_boundary *b, uint32_t from, uint32_t to, bool open)
 
 static void forget(gtx_boundary *b, uint32_t from, uint32_t to)
 {
-    for (uint32_t i = 0; i < b->count; ++i) {
-        if (b->latest[i].from != from || b->latest[i].to != to)
+    for (uint32_t age = 0; age < b->count; ++age) {
+        const gtx_boundary_edge *edge = gtx_boundary_latest(b, age);
+        if (edge->from != from || edge->to != to)
             continue;
+        for (uint32_t i = b->end - 1 - age; i + 1 < b->end; ++i)
+            b->edges[i] = b->edges[i + 1];
         --b->count;
-        memmove(b->latest + i, b->latest + i + 1, (b->count - i) * sizeof *b->latest);
+        --b->end;
         return;
     }
 }
 
 static void remember(gtx_boundary *b, gtx_boundary_edge edge)
 {
+    if (b->end == sizeof b->edges / sizeof *b->edges) {
+        memcpy(b->edges, b->edges + b->end - b->count, b->count * sizeof *b->edges);
+        b->end = b->count;
+    }
+    b->edges[b->end++] = edge;
     if (b->count < GTX_LATEST_EDGES)
         ++b->count;
-    memmove(b->latest + 1, b->latest, (b->count - 1) * sizeof *b->latest);
-    b->latest[0] = edge;
 }
 
 void gtx_boundary_begin(gtx_boundary *b, uint8_t *links, uint32_t vertices)

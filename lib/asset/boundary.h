@@ -24,9 +24,16 @@ typedef struct gtx_boundary_edge {
 typedef struct gtx_boundary {
     uint8_t *links;        /* of a vertex, 3 bytes each: the one after it, the one before it */
     uint32_t vertices;     /* below GTX_NO_NEIGHBOUR */
-    uint32_t count;
-    gtx_boundary_edge latest[GTX_LATEST_EDGES]; /* that are open; the newest first */
+    uint32_t count;        /* of the latest edges that are open, GTX_LATEST_EDGES at most */
+    uint32_t end;          /* behind the newest; there is room for more, so that few are moved */
+    gtx_boundary_edge edges[4 * GTX_LATEST_EDGES];
 } gtx_boundary;
+
+/* The latest edges by their age, from 0 for the newest to count - 1. */
+static inline const gtx_boundary_edge *gtx_boundary_latest(const gtx_boundary *b, uint32_t age)
+{
+    return &b->edges[b->end - 1 - age];
+}
 
 /* `links` are the caller's, GTX_LINK_BYTES of them, with any content. */
 void gtx_boundary_begin(gtx_boundary *b, uint8_t *links, uint32_t vertices);

@@ -129,7 +129,8 @@ static uint32_t code_word(run *r, uint32_t corner)
 static uint32_t start_of(const gtx_boundary *b, const uint32_t corner[3])
 {
     for (uint32_t age = 0; age < b->count; ++age)
-        if (b->latest[age].from == corner[0] && b->latest[age].to == corner[1])
+        if (gtx_boundary_latest(b, age)->from == corner[0] &&
+            gtx_boundary_latest(b, age)->to == corner[1])
             return age;
     return gtx_boundary_after(b, corner[0]) == corner[1] ? ALONG : FREE;
 }
@@ -146,9 +147,10 @@ static void code_triangle(run *r, size_t triangle)
     const uint32_t start = r->apply ? start_of(b, corner) : (uint32_t)*code / KINDS;
     const bool joined = start < b->count;
     if (joined) {
-        near[0] = corner[0] = b->latest[start].from;
-        near[1] = corner[1] = b->latest[start].to;
-        near[2] = b->latest[start].across;
+        const gtx_boundary_edge *edge = gtx_boundary_latest(b, start);
+        near[0] = corner[0] = edge->from;
+        near[1] = corner[1] = edge->to;
+        near[2] = edge->across;
     } else {
         meet(r, corner[0] = code_word(r, corner[0]), NULL);
         near[0] = near[1] = near[2] = corner[0];

@@ -81,30 +81,35 @@ static void find_normals(const shaping *s)
     }
 }
 
-/* A corner of a triangle: where it is among the patch's texels, and its normal in the patch's own
- * frame. */
+/* A corner of a triangle: where it is among the patch's texels. */
 typedef struct corner {
     double at[2];
-    float normal[3];
+    uint32_t vertex;
 } corner;
 
-static corner corner_of(const shaping *s, const gtx_patch_frame *frame, float (*rows)[3],
-                        uint32_t vertex)
+static corner corner_of(const shaping *s, const gtx_patch_frame *frame, uint32_t vertex)
 {
     const uint16_t *q = s->mesh.positions + 3 * (size_t)vertex;
-    const float *n = s->normals + 3 * (size_t)vertex;
-    const float size = sqrtf(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-    corner out = {.normal = {0, 0, 0}};
+    corner out = {.vertex = vertex};
     for (int a = 0; a < 2; ++a) {
         out.at[a] = frame->to_grid[a][3];
         for (int k = 0; k < 3; ++k)
             out.at[a] += frame->to_grid[a][k] * ((double)s->mesh.origin[k] +
                                                  (double)s->mesh.step * q[k]);
     }
-    for (int r = 0; r < 3; ++r)
-        for (int k = 0; k < 3 && size > 0; ++k)
-            out.normal[r] += rows[r][k] * n[k] / size;
     return out;
+}
+
+/* Its normal in the patch's own frame. */
+static void normal_at(const shaping *s, float (*rows)[3], const corner *c, float out[3])
+{
+    const float *n = s->normals + 3 * (size_t)c->vertex;
+    const float size = sqrtf(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    for (int r = 0; r < 3; ++r) {
+        out[r] = 0;
+        for (int k = 0; k < 3 && size > 0; ++k)
+            out[r] += rows[r][k] * n[k] / size;
+    }
 }
 
 static double within(double at, double most)
@@ -123,9 +128,10 @@ static void put_normal(const shaping *s, const gtx_patch *patch, uint32_t x, uin
 }
 
 /* The texels whose middles are in the triangle. */
-static void put_triangle(shaping *s, const gtx_patch *patch, const corner c[3])
+static void put_triangle(shaping *s, const gtx_patch *patch, float (*rows)[3], const corner c[3])
 {
     double low[2], high[2], side[2][2];
+    float normal[3][3];
     for (int a = 0; a < 2; ++a) {
         const double most = patch->rect[2 + a] - 1;
         low[a] = ceil(within(fmin(fmin(c[0].at[a], c[1].at[a]), c[2].at[a]), most));
@@ -135,9 +141,11 @@ static void put_triangle(shaping *s, const gtx_patch *patch, const corner c[3])
     }
     const double area = side[0][0] * side[1][1] - side[0][1] * side[1][0];
     const double looks = fmax(high[0] - low[0] + 1, 0) * fmax(high[1] - low[1] + 1, 0);
-    if (looks > s->looks)
+    if (looks > s->looks || looks < 1)
         return;
     s->looks -= looks;
+    for (int k = 0; k < 3; ++k)
+        normal_at(s, rows, &c[k], normal[k]);
     for (double y = low[1]; y <= high[1]; ++y)
         for (double x = low[0]; x <= high[0]; ++x) {
             const double u = x - c[0].at[0], v = y - c[0].at[1];
@@ -147,22 +155,26 @@ static void put_triangle(shaping *s, const gtx_patch *patch, const corner c[3])
                 continue;
             float n[3];
             for (int k = 0; k < 3; ++k)
-                n[k] = (float)(1 - p - q) * c[0].normal[k] + (float)p * c[1].normal[k] +
-                       (float)q * c[2].normal[k];
+                n[k] = (float)(1 - p - q) * normal[0][k] + (float)p * normal[1][k] +
+                       (float)q * normal[2][k];
             put_normal(s, patch, (uint32_t)x, (uint32_t)y, n);
         }
 }
 
-/* Where no triangle lies on a corner's texel. */
-static void put_corner(const shaping *s, const gtx_patch *patch, const corner *c)
+/* Where no triangle lies on a corner's texel, as one that comes later may. */
+static void put_corner(const shaping *s, const gtx_patch *patch, float (*rows)[3],
+                       const corner *c)
 {
     const gtx_info *info = &s->asset->info;
     uint32_t at[2];
+    float n[3];
     for (int a = 0; a < 2; ++a)
         at[a] = (uint32_t)(within(c->at[a], patch->rect[2 + a] - 1) + 0.5);
     const size_t row = (size_t)patch->page * info->page_height + patch->rect[1] + at[1];
-    if (!s->ring[row * info->page_width + patch->rect[0] + at[0]])
-        put_normal(s, patch, at[0], at[1], c->normal);
+    if (s->ring[row * info->page_width + patch->rect[0] + at[0]])
+        return;
+    normal_at(s, rows, c, n);
+    put_normal(s, patch, at[0], at[1], n);
 }
 
 static void shape_patch(shaping *s, uint32_t index)
@@ -172,16 +184,14 @@ static void shape_patch(shaping *s, uint32_t index)
     const gtx_patch_frame frame = gtx_patch_frame_of(patch, info->height_bits);
     float rows[3][3];
     gtx_normal_frame(patch, rows);
-    for (int corners = 0; corners < 2; ++corners)
-        for (uint32_t t = s->mesh.first[index]; t < s->mesh.first[index + 1]; ++t) {
-            corner c[3];
-            for (size_t k = 0; k < 3; ++k)
-                c[k] = corner_of(s, &frame, rows, s->mesh.indices[3 * (size_t)t + k]);
-            if (!corners)
-                put_triangle(s, patch, c);
-            for (int k = 0; k < 3 && corners; ++k)
-                put_corner(s, patch, &c[k]);
-        }
+    for (uint32_t t = s->mesh.first[index]; t < s->mesh.first[index + 1]; ++t) {
+        corner c[3];
+        for (size_t k = 0; k < 3; ++k)
+            c[k] = corner_of(s, &frame, s->mesh.indices[3 * (size_t)t + k]);
+        for (int k = 0; k < 3; ++k)
+            put_corner(s, patch, rows, &c[k]);
+        put_triangle(s, patch, rows, c);
+    }
     const size_t row = (size_t)patch->page * info->page_height + patch->rect[1];
     const size_t first = row * info->page_width + patch->rect[0];
     const gtx_fill area = {s->asset->normal[0] + 2 * first, s->ring + first, info->page_width,

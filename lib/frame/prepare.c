@@ -246,7 +246,8 @@ static gtx_result check(const gtx_asset *asset, const gtx_model_desc *desc, gtx_
     if (!result)
         result = gtx_check_derived(texels, &desc->limits, "a model",
                                    gtx_model_memory(asset, desc), error);
-    return result ? result : gtx_check_crowd(asset, &desc->limits, error);
+    /* No ray is cast into what has no heights. */
+    return result || asset->bare ? result : gtx_check_crowd(asset, &desc->limits, error);
 }
 
 gtx_result gtx_model_prepare(const gtx_asset *asset, const gtx_model_desc *desc, gtx_model **out,

@@ -256,9 +256,9 @@ static void test_boundary(void **state)
         assert_int_equal(gtx_boundary_before(&b, after[v]), v);
     }
     assert_int_equal(b.count, 5);
-    assert_int_equal(b.latest[0].from, 0);
-    assert_int_equal(b.latest[0].to, 4);
-    assert_int_equal(b.latest[0].across, 3);
+    assert_int_equal(gtx_boundary_latest(&b, 0)->from, 0);
+    assert_int_equal(gtx_boundary_latest(&b, 0)->to, 4);
+    assert_int_equal(gtx_boundary_latest(&b, 0)->across, 3);
     /* The last of the fan closes it: 0 is inside. */
     gtx_boundary_add(&b, (uint32_t[]){0, 4, 1}, true);
     assert_int_equal(gtx_boundary_after(&b, 0), GTX_NO_NEIGHBOUR);

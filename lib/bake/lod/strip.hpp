@@ -88,7 +88,7 @@ private:
         uint32_t best = NO_TRIANGLE;
         bool is_new = false;
         for (uint32_t age = 0; age < boundary_.count; ++age) {
-            const gtx_boundary_edge &edge = boundary_.latest[age];
+            const gtx_boundary_edge &edge = *gtx_boundary_latest(&boundary_, age);
             const uint32_t t = left_at(patch, edge);
             if (t == NO_TRIANGLE)
                 continue;
