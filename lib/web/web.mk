@@ -63,7 +63,7 @@ $(web_package)/core.js: $(web_faces) $(web)/core.a $(web)/zstd.o
 	$(Q)$(emcc) -Oz --closure 0 -o $@ $^ --no-entry \
 	  -sMODULARIZE=1 -sEXPORT_ES6=1 -sENVIRONMENT=web,worker -sFILESYSTEM=0 -sMALLOC=emmalloc \
 	  -sMIN_WEBGL_VERSION=2 -sMAX_WEBGL_VERSION=2 -sALLOW_MEMORY_GROWTH=1 \
-	  -sINITIAL_MEMORY=512KB -sTOTAL_STACK=128KB \
+	  -sINITIAL_MEMORY=512KB -sMEMORY_GROWTH_GEOMETRIC_STEP=0.05 -sTOTAL_STACK=128KB \
 	  -sGL_SUPPORT_AUTOMATIC_ENABLE_EXTENSIONS=0 -sINCOMING_MODULE_JS_API=[locateFile] \
 	  -sEXPORTED_RUNTIME_METHODS=$(subst $(space),$(comma),$(web_methods)) \
 	  -sEXPORTED_FUNCTIONS=_malloc,_free
@@ -71,10 +71,10 @@ $(web_package)/core.js: $(web_faces) $(web)/core.a $(web)/zstd.o
 $(web_package)/%: lib/web/%
 	@mkdir -p $(@D)
 	$(Q)cp $< $@
-# Without the lines of comments, 3 KB of what a page waits for: types tell what is there.
+# Without comments and indentation, 3 KB of what a page waits for: types tell what is there.
 $(web_package)/%.js: lib/web/%.js lib/web/web.mk
 	@mkdir -p $(@D)
-	$(Q)sed -e '/^ *\/\*.*\*\/ *$$/d' -e '/^ *\/\*/,/\*\/ *$$/d' $< > $@
+	$(Q)sed -e '/^ *\/\*.*\*\/ *$$/d' -e '/^ *\/\*/,/\*\/ *$$/d' -e 's/^ *//' $< > $@
 $(web_package)/LICENSE: LICENSE
 	@mkdir -p $(@D)
 	$(Q)cp $< $@

@@ -68,7 +68,7 @@ function compare(a, b) {
     both += x && y;
     either += x || y;
   }
-  return {apart: apart / (WIDTH * HEIGHT), iou: both / either};
+  return {apart: apart / (WIDTH * HEIGHT), iou: both / either, shown: either};
 }
 
 /* dB, where one of them shows the model. */
@@ -177,13 +177,27 @@ const ways = {
   },
 };
 
+/* The frame of a ball of few triangles that covers as many pixels: what three takes to shade these. */
+function ballFrame(outline) {
+  const covered = (p) => compare(p, p).shown, mesh = new THREE.Mesh(
+      new THREE.SphereGeometry(ball.radius / 2, 24, 16), new THREE.MeshStandardMaterial({roughness: 1}));
+  mesh.position.copy(ball.center);
+  for (let i = 0; i < 8; ++i) {
+    frame(mesh);
+    mesh.scale.multiplyScalar(Math.sqrt(covered(outline) / covered(picture())));
+  }
+  const times = Array.from({length: FRAMES}, () => frame(mesh));
+  mesh.geometry.dispose();
+  return times.sort((a, b) => a - b)[FRAMES >> 1];
+}
+
 /* Loaded twice on the line, so that modules, workers and shaders are there the second time: those of
  * coarse models, too; but memory as if this were all, for heaps keep what whole files have taken. Outlines
- * and pictures are compared with Draco's. */
-let outline = null, last = '';
-window.measure = async (kind, url, bits, maxError) => {
-  if (kind === 'draco')
-    ball = outline = null;
+ * and pictures are compared with those of `mesh`, a Draco file. */
+let last = '';
+window.measure = async (kind, url, bits, maxError, mesh) => {
+  const drawn = await ways.draco(mesh, frame), outline = picture();
+  drawn.close();
   await link(bits);
   const warm = await ways[kind](url + '?warm&ranges', frame, maxError);
   await warm.complete?.(); /* what a stopped download has sent would count for the next */
@@ -203,7 +217,6 @@ window.measure = async (kind, url, bits, maxError) => {
   await all.complete?.();
   frame(object);
   const final = picture();
-  outline ??= final;
   /* The first picture from which on none differs from the last one, after which nothing is asked for. */
   let full = pictures.length;
   while (full && compare(pictures[full - 1].picture, end.picture).apart <= MAX_APART)
@@ -216,7 +229,7 @@ window.measure = async (kind, url, bits, maxError) => {
   return {first, full: pictures[full].at - start, iou, psnr: psnr(end.picture, outline),
           wholePsnr: psnr(final, outline),
           task: longest(start, end.at), bytes: all.bytes,
-          frame: times.sort((a, b) => a - b)[FRAMES >> 1],
+          frame: times.sort((a, b) => a - b)[FRAMES >> 1], least: ballFrame(outline),
           memory: Math.min(warm.memory, all.memory)};
 };
 window.shot = () => last;
