@@ -13,8 +13,13 @@ namespace gtx::baking {
  * its corners show. Turned pixels (format/measures.md) of an engine without: 22,053; with them
  * 4,162, and 5,768 and 13,846 at half and at double the depth, 10,950 and 3,938 at cosines of 0.5
  * and 0.85. Of a gargoyle 407, and 228, 223, 255, 318 and 131; but edges of walls are rounded over
- * a texel, and its PSNR falls by 0.1 dB, at 0.85 by 0.2. */
+ * a texel, and its PSNR falls by 0.1 dB, at 0.85 by 0.2. All without WALL. */
 constexpr double RISE = 4, ALIKE = 0.7;
+/* How much of a wall a texel has at most, for what else is around it: the edge of a wall is shaded
+ * as a chamfer, that the even cells beside it be bent no more than they must. Turned pixels at
+ * half, at this and without a limit: of a truck 14,345, 8,994 and 11,271, of an engine 13,942,
+ * 4,117 and 4,162, of a helmet at 1.5 11,442, 8,663 and 8,591. */
+constexpr double WALL = 2.2;
 
 namespace {
 
@@ -75,7 +80,9 @@ void shade_walls(const PatchMaps &maps, unsigned height_bits, Shades &shades)
             }
         }
     for (size_t t = 0; any && t < wall.size(); ++t) {
-        const Vec3d sum = wall[t] + Vec3d(shades.normal[t]) * even[t];
+        const double most = WALL * even[t], all = length(wall[t]);
+        const double share = even[t] > 0 && all > most ? most / all : 1;
+        const Vec3d sum = wall[t] * share + Vec3d(shades.normal[t]) * even[t];
         if (dot(wall[t], wall[t]) > 0 && dot(sum, sum) > 0)
             shades.normal[t] = Vec3f(normalize(sum));
     }
