@@ -7,7 +7,6 @@
 #include "frame/planner.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* The coarsest level within the allowed error. */
@@ -66,13 +65,7 @@ uint32_t gtx_plan_whole(const gtx_draw_call *draw, const gtx_model *model,
     return model->coarsest_error <= gtx_allowed_error(&f, model->sphere) ? model->mip_count : 0;
 }
 
-static int compare_patches(const void *a, const void *b)
-{
-    const gtx_plan_entry *x = a, *y = b;
-    return x->patch < y->patch ? -1 : x->patch > y->patch;
-}
-
-/* By distance, and where that is the same by patch: boxes come first, in order of their levels. */
+/* By distance: boxes come first, in order of their levels. */
 static void sort(gtx_plan *plan)
 {
     for (uint32_t i = 0; i < plan->count; ++i)
@@ -80,13 +73,6 @@ static void sort(gtx_plan *plan)
     gtx_order(plan->ranks, plan->ranks + plan->count, plan->count);
     for (uint32_t i = 0; i < plan->count; ++i)
         plan->entries[i] = plan->found[plan->ranks[i].place];
-    for (uint32_t first = 0, end; first < plan->count; first = end) {
-        for (end = first + 1; end < plan->count; ++end)
-            if (plan->entries[end].distance != plan->entries[first].distance)
-                break;
-        if (end > first + 1)
-            qsort(plan->entries + first, end - first, sizeof *plan->entries, compare_patches);
-    }
 }
 
 /* Of patches that are seen from two sides, LOD meshes of more triangles than that are not drawn
