@@ -152,14 +152,13 @@ export async function* modelsOf(geotex, ask, {onProgress = () => {}, wanted = ()
       const {model, ...told} = await geotex.load(gathered.all, {prefix: true, pieces: held[1] && held});
       size = told.fileBytes;
       whole = told.needed ? 0 : gathered.length;
-      /* Twice as much each time: all beginnings together take no longer than the last two; but the last
-       * LOD mesh is seen to. */
-      const [{first}] = size ? placesIn(gathered.all) : [{first: 0}];
-      needed = Math.max(told.needed, model ? 2 * gathered.length : 0);
-      if (needed > 0.75 * first && gathered.length < first)
-        needed = first;
+      needed = told.needed;
       if (!model)
         continue;
+      /* About twice as much each time, to a section's end: all beginnings together take no longer than
+       * the last two, and what makes a model finer is not waited for longer than it takes. */
+      for (const {end} of sectionsOf(gathered.all))
+        needed = end <= 2 * gathered.length ? Math.max(needed, end) : needed;
       yield model;
       if (!source.grants || whole)
         continue;
