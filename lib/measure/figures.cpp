@@ -46,6 +46,7 @@ struct Look {
     bool faces_alike(const Vec3d &normal, const View &shown, const MeshImage &of, uint32_t i,
                      uint32_t j) const;
     bool shows_as_turned(const Suspect &suspect, const MeshImage &close) const;
+    bool tells_which_way(size_t at, const Vec3d &normal) const;
     void appearance(uint32_t i, uint32_t j, const ViewHit &hit, double depth_error,
                     double tolerance);
     void leaks(const Vector<Crossing> &crossings);
@@ -175,10 +176,19 @@ void Look::faults()
     }
 }
 
+/* Whether the source is seen from its front there, by a normal on that side of its triangle: no
+ * height field has others. */
+bool Look::tells_which_way(size_t at, const Vec3d &normal) const
+{
+    const Vec3d out = all.mesh.area_vector(image.triangle[at]);
+    return image.front[at] && dot(out, normal) * dot(out, view.toward) > 0;
+}
+
 void Look::appearance(uint32_t i, uint32_t j, const ViewHit &hit, double depth_error,
                       double tolerance)
 {
-    bool in_source = image.triangle[size_t(j) * view.size + i] != NO_HIT;
+    const size_t at = size_t(j) * view.size + i;
+    bool in_source = image.triangle[at] != NO_HIT;
     bool in_asset = hit.patch != NO_HIT;
     Fragment source = {}, seen = {};
     if (in_source)
@@ -191,7 +201,7 @@ void Look::appearance(uint32_t i, uint32_t j, const ViewHit &hit, double depth_e
         return;
     const double angle = degrees_between(source.normal, seen.normal);
     out.angle.push_back(float(angle));
-    if (angle > TURNED_DEGREES)
+    if (angle > TURNED_DEGREES && tells_which_way(at, source.normal))
         suspects.push_back({i, j, hit, Fault::turned, angle, tolerance});
 }
 
