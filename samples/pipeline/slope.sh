@@ -1,7 +1,7 @@
 #!/bin/sh
 # What worlds of a sculpt cost, a row each: processor seconds, the largest memory, bytes; and then
 # what a frame takes around them, a row each, where WALK is samples/world.
-#   [WALK=WORLD] slope.sh GTX SCULPT FOLDER JOBS TRIANGLES...
+#   [WALK=WORLD] [PLAN=OPTIONS] slope.sh GTX SCULPT FOLDER JOBS TRIANGLES...
 # SCULPT may be more than a name: "sculpt --terrain GRID".
 # Needs Ninja, and /usr/bin/time of GNU. Worlds stay in FOLDER/TRIANGLES, 120 bytes a triangle; a
 # step that was killed begins again, what was cooked stays.
@@ -14,7 +14,7 @@ cook() {
     world=$folder/$1
     [ -f "$world/build.ninja" ] ||
         $sculpt --triangles "$1" - | /usr/bin/time -o "$world.plan" -f '%U %S %M' \
-            "$gtx" world plan - -o "$world" --triangles 1e6 --glb >&2
+            "$gtx" world plan - -o "$world" --triangles 1e6 --glb $PLAN >&2
     [ -f "$world/tiles.gtw" ] ||
         GTX=$gtx /usr/bin/time -o "$world.cook" -f '%U %S %M' \
             ninja -C "$world" -j "$jobs" >"$world.log"
