@@ -254,7 +254,8 @@ typedef struct gtx_compare_desc {
                                      has level 0 alone, and no details */
     uint32_t local_metres;        /* 1: grids in degrees become metres, true at the latitude of
                                      the first one's middle (gtx_height_grid_to_metres) */
-    uint32_t reserved[3];
+    uint32_t depths;              /* 1: values of grids are depths, positive downwards */
+    uint32_t reserved[2];
 } gtx_compare_desc;
 
 /* Figures that a build may put limits on; format/measures.md defines each. */

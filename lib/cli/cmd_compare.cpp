@@ -10,7 +10,7 @@
 enum { MAX_FILES = 4097 };
 
 static gtx_compare_desc desc;
-static bool as_json, any_model, local_metres;
+static bool as_json, any_model, depths, local_metres;
 static double tile_error, max_holes = -1, max_walls = -1, max_turned = -1;
 static double min_iou = -1, max_rms = -1;
 
@@ -27,6 +27,8 @@ static const option options[] = {
      1e30},
     {"up", 0, OPTION_CHOICE, &desc.z_up, "y|z",
      "the up axis that the asset was cooked with [y]", 0, 0},
+    {"depths", 0, OPTION_FLAG, &depths, nullptr,
+     "values of grids are depths: positive is down, as horizons and world plan have it", 0, 0},
     {"local-metres", 0, OPTION_FLAG, &local_metres, nullptr,
      "convert grids in degrees to metres, as horizons and world plan do", 0, 0},
     {"any-model", 0, OPTION_FLAG, &any_model, nullptr,
@@ -128,6 +130,7 @@ int cmd_compare(int argc, char **argv)
     desc.more = files + 2;
     desc.more_count = uint32_t(count - 2);
     desc.any_model = any_model;
+    desc.depths = depths;
     desc.local_metres = local_metres;
     desc.figures_only = !as_json;
     desc.progress = show_progress;

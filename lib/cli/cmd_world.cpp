@@ -9,7 +9,7 @@ static const char *folder;
 static uint32_t engine, threads, up, sides;
 static uint64_t triangles = gtx::MAX_TILE, memory = gtx::WORKER_MEMORY;
 static double unit = 1;
-static bool glb, local_metres;
+static bool glb, depths, local_metres;
 
 static const option plan_options[] = {
     {"output", 'o', OPTION_STRING, &folder, "DIR", "the world's folder (required)", 0, 0},
@@ -24,6 +24,8 @@ static const option plan_options[] = {
     {"sides", 0, OPTION_CHOICE, &sides, "auto|front|both",
      "visible sides; auto: front of closed surfaces, both of others [auto]", 0, 0},
     {"up", 0, OPTION_CHOICE, &up, "y|z", "the models' up axis; z: +Z becomes +Y [y]", 0, 0},
+    {"depths", 0, OPTION_FLAG, &depths, nullptr, "values of grids are depths: positive is down", 0,
+     0},
     {"local-metres", 0, OPTION_FLAG, &local_metres, nullptr,
      "convert grids in degrees to metres, by the latitude of the first one's middle", 0, 0},
     {"unit", 0, OPTION_NUMBER, &unit, "M", "metres per unit of the models [1]", 1e-30, 1e30},
@@ -89,6 +91,7 @@ static gtx::StepReport run_plan(const char *const *operands, int count, gtx::Tas
     options.glb = glb;
     options.sides = gtx::Sides(sides);
     options.z_up = up == 1;
+    options.depths = depths;
     options.local_metres = local_metres;
     options.unit = unit;
     options.command = own_path();

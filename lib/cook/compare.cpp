@@ -20,6 +20,7 @@ static void check(const gtx_compare_desc &desc)
     require_argument(desc.z_up <= 1, "z_up is 0 or 1");
     require_argument(desc.any_model <= 1, "any_model is 0 or 1");
     require_argument(desc.local_metres <= 1, "local_metres is 0 or 1");
+    require_argument(desc.depths <= 1, "depths is 0 or 1");
     require_argument(desc.figures_only <= 1, "figures_only is 0 or 1");
     require_models(desc.more, desc.more_count);
 }
@@ -132,7 +133,7 @@ Models read_compared(const char *model, const gtx_compare_desc &desc, Task &task
 {
     return read_sources(model, desc.more, desc.more_count,
                         {text_of(desc.texture_dir), text_of(desc.base_color)},
-                        desc.local_metres, task);
+                        {bool(desc.local_metres), bool(desc.depths)}, task);
 }
 
 void compare_models(const ShownAt &shown, uint32_t levels, Models &models,

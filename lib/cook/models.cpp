@@ -173,7 +173,7 @@ static bool is_grid(const char *path)
 }
 
 Models read_sources(const char *first, const char *const *more, uint32_t more_count,
-                    const TextureFiles &textures, bool local_metres, Task &task)
+                    const TextureFiles &textures, const GridSense &sense, Task &task)
 {
     Vector<const char *> models, grids;
     for (uint32_t i = 0; i <= more_count; ++i) {
@@ -188,8 +188,10 @@ Models read_sources(const char *first, const char *const *more, uint32_t more_co
     for (const char *path : grids) {
         append(out.grids, naming(path, more_count > 0, task, [&] {
             HeightGrid grid = read_grid(path, {}, task);
-            if (local_metres)
+            if (sense.local_metres)
                 use_common_metres(grid, latitude);
+            if (sense.depths)
+                use_depths(grid);
             return mesh_of(grid, task);
         }));
         out.sources.push_back(path);

@@ -36,10 +36,15 @@ inline std::string text_of(const char *text) { return text ? text : ""; }
 Models read_models(const ModelInput &first, const char *const *more, uint32_t more_count,
                    const TextureFiles &textures, Task &task);
 
-/* The same, and height grids among them: each a surface through its nodes. `local_metres`: those in
- * degrees become metres, true at the latitude of the first one's middle. */
+struct GridSense {
+    bool local_metres = false;   /* those in degrees become metres, true at the latitude of the first
+                                    one's middle */
+    bool depths = false;         /* values are depths, positive downwards */
+};
+
+/* The same, and height grids among them: each a surface through its nodes. */
 Models read_sources(const char *first, const char *const *more, uint32_t more_count,
-                    const TextureFiles &textures, bool local_metres, Task &task);
+                    const TextureFiles &textures, const GridSense &sense, Task &task);
 
 /* One after another into one mesh; gives back the files' memory. With `z_up` the models' +Z becomes
  * +Y, and their +Y -Z. */

@@ -122,6 +122,8 @@ HeightGrid mosaic(const Vector<HeightGrid> &parts, const Limits &limits = Limits
 void use_local_metres(HeightGrid &grid, double latitude);
 /* Likewise of several: the latitude, NaN at first, becomes that of the first one's middle. */
 void use_common_metres(HeightGrid &grid, double &latitude);
+/* Values that were depths, positive downwards, become heights. */
+void use_depths(HeightGrid &grid);
 
 /* Values of `from` at the nodes of `to`: between its nodes bilinear, the mean over what a node of
  * `to` stands for where those are further apart; of categories the nearest and most frequent; NaN

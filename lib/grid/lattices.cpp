@@ -35,6 +35,12 @@ void use_common_metres(HeightGrid &grid, double &latitude)
     use_local_metres(grid, latitude);
 }
 
+void use_depths(HeightGrid &grid)
+{
+    for (float &value : grid.values)
+        value = -value;
+}
+
 /* Node coordinates in one lattice -> those in another. */
 class Passage {
 public:

@@ -80,14 +80,16 @@ namespace {
 
 class GridStream : public TriangleStream {
 public:
-    GridStream(const std::string &path, double latitude, Task &task)
-        : path_(path), latitude_(latitude), task_(task) {}
+    GridStream(const std::string &path, const Plan &plan, Task &task)
+        : path_(path), plan_(plan), task_(task) {}
     CornerTraits traits() const override { return {true, false, false}; }
     void read(const TriangleSink &sink) override
     {
         HeightGrid grid = read_grid(path_, {}, task_);
-        if (!std::isnan(latitude_))
-            use_local_metres(grid, latitude_);
+        if (!std::isnan(plan_.latitude))
+            use_local_metres(grid, plan_.latitude);
+        if (plan_.of_depths)
+            use_depths(grid);
         require_lengths(grid);
         for (uint32_t row = 0; row + 1 < grid.ny; ++row) {
             task_.advance(double(row) / grid.ny);
@@ -102,19 +104,19 @@ public:
 
 private:
     const std::string path_;
-    const double latitude_;
+    const Plan &plan_;
     Task &task_;
 };
 
 } // namespace
 
-static std::unique_ptr<TriangleStream> open_input(const WorldInput &input, double latitude,
+static std::unique_ptr<TriangleStream> open_input(const WorldInput &input, const Plan &plan,
                                                   Task &task)
 {
     if (input.raw)
         return open_raw_triangles(input.path, task);
     if (input.grid)
-        return std::make_unique<GridStream>(input.path, latitude, task);
+        return std::make_unique<GridStream>(input.path, plan, task);
     return open_triangles(input.path, task);
 }
 
@@ -124,7 +126,7 @@ template <class Body> static void for_each_input(const Plan &plan, Task &task, B
     for (const WorldInput &input : plan.inputs) {
         const size_t before = task.warnings.size();
         try {
-            body(input, *open_input(input, plan.latitude, task));
+            body(input, *open_input(input, plan, task));
         } catch (Error &e) {
             if (e.result != GTX_CANCELLED)
                 e.message.insert(0, input.path + ": ");

@@ -103,6 +103,7 @@ StepReport plan_world(const PlanOptions &options, Task &task)
     plan.glb = options.glb;
     plan.z_up = options.z_up;
     plan.unit = options.unit;
+    plan.of_depths = options.depths;
     plan.inputs = find_inputs(options);
     for (const WorldInput &input : plan.inputs)
         if (input.raw)

@@ -48,6 +48,7 @@ struct Plan {
     bool closed = false;             /* back faces are never seen */
     double unit = 1;
     double latitude = NAN;           /* where metres are true that grids in degrees become */
+    bool of_depths = false;          /* values of grids are depths, positive downwards */
     CornerTraits traits;
     Lattice lattice;
     Vector<WorldInput> inputs;

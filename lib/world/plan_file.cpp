@@ -135,6 +135,8 @@ void write_plan(const Plan &plan)
     gtx_json_exact(&out, "unit", plan.unit);
     if (!std::isnan(plan.latitude))
         gtx_json_exact(&out, "latitude", plan.latitude);
+    if (plan.of_depths)
+        gtx_json_bool(&out, "depths", true);
     gtx_json_bool(&out, "doubles", plan.traits.doubles);
     gtx_json_bool(&out, "normals", plan.traits.normals);
     gtx_json_bool(&out, "colors", plan.traits.colors);
@@ -210,6 +212,7 @@ static void read_parts(const json &from, Plan &plan)
     plan.z_up = from.at("up") == "z";
     plan.unit = from.at("unit");
     plan.latitude = from.value("latitude", plan.latitude);
+    plan.of_depths = from.value("depths", false);
     plan.traits = {from.at("doubles"), from.at("normals"), from.at("colors"),
                    from.value("textured", false)};
     plan.lattice.exponent = int(whole_of(from.at("lattice").at("exponent"), 1100));

@@ -43,6 +43,7 @@ struct PlanOptions {
     Engine engine = Engine::NINJA;
     bool glb = false, z_up = false;
     bool local_metres = false;       /* of grids in degrees; true at the first's middle */
+    bool depths = false;             /* values of grids are depths, positive downwards */
     Sides sides = Sides::AUTO;       /* that are visible */
     double unit = 1;
     std::string command = "gtx";     /* that runs the steps */

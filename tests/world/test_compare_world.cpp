@@ -158,13 +158,19 @@ static std::string tile_in_degrees(int number)
     return path;
 }
 
-static void tiles_in_degrees_meet_in_metres(void **)
+/* Where the module that reads them does not lie beside the program. */
+static void skip_without_gdal()
 {
-    char self[4096] = ""; /* beside which the module that reads them lies, where GDAL is there */
+    char self[4096] = "";
     assert_true(readlink("/proc/self/exe", self, sizeof self - 1) > 0);
     std::strcpy(std::strrchr(self, '/') + 1, "geotex-grid.so");
     if (access(self, F_OK) != 0)
         skip();
+}
+
+static void tiles_in_degrees_meet_in_metres(void **)
+{
+    skip_without_gdal();
     PlanOptions options;
     options.models = {tile_in_degrees(0), tile_in_degrees(1)};
     options.folder = in_folder("degrees");
@@ -200,6 +206,43 @@ static void tiles_in_degrees_meet_in_metres(void **)
     compare_world(options.folder, options.models[0].c_str(), 0, desc, &result, nullptr, about);
     assert_int_equal(result.hole_pixels, 0);
     assert_true(result.silhouette_iou > 0.99);
+}
+
+/* Of depths 100 at the border and 150 in the middle. */
+static void depths_are_downwards(void **)
+{
+    skip_without_gdal();
+    std::string text = "ncols 21\nnrows 21\nxllcorner 0\nyllcorner 0\ncellsize 10\n";
+    for (int j = -10; j <= 10; ++j)
+        for (int i = -10; i <= 10; ++i)
+            text += std::to_string(150 - (i * i + j * j) / 4) + (i == 10 ? "\n" : " ");
+    PlanOptions options;
+    options.models = {in_folder("depths.asc")};
+    options.folder = in_folder("depths");
+    write_file(options.models[0], text);
+    options.depths = true;
+    make_world(options);
+    Task task(1, nullptr, nullptr, {"read", "cook", "simplify"}, {1, 1, 1});
+    double least = INFINITY, greatest = -INFINITY;
+    read_inputs(read_plan(options.folder, task), task, [&](const Corners3 &corners) {
+        for (const Corner &c : corners) {
+            least = std::min(least, c.position.y);
+            greatest = std::max(greatest, c.position.y);
+        }
+    });
+    assert_true(least == -150 && greatest == -100);
+
+    gtx_compare_desc desc = {};
+    desc.size = SIZE;
+    desc.figures_only = desc.depths = 1;
+    gtx_compare_result result;
+    std::string about;
+    compare_world(options.folder, options.models[0].c_str(), 0, desc, &result, nullptr, about);
+    assert_int_equal(result.hole_pixels, 0);
+    assert_true(result.silhouette_iou > 0.99 && result.forward_rms < 1e-3);
+    desc.depths = 0; /* upside down */
+    compare_world(options.folder, options.models[0].c_str(), 0, desc, &result, nullptr, about);
+    assert_true(result.hole_pixels > 0 && result.forward_rms > 0.1);
 }
 
 /* A world of one tile has the figures of that tile's asset. */
@@ -315,6 +358,7 @@ int main()
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_whole_world_has_no_hole),
         cmocka_unit_test(tiles_in_degrees_meet_in_metres),
+        cmocka_unit_test(depths_are_downwards),
         cmocka_unit_test(one_tile_is_measured_as_an_asset),
         cmocka_unit_test(a_missing_tile_is_a_hole),
         cmocka_unit_test(hostile_worlds_are_refused),

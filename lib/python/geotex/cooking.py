@@ -172,20 +172,21 @@ def cook(model: Source, output: Optional[Path] = None, *, name: Optional[Path] =
 def compare(asset: Path, model: Path, *, size: int = 1024, levels: int = 0, threads: int = 0,
             up: str = "y", more: Sequence[Path] = (), random_views: int = 0, seed: int = 0,
             any_model: bool = False, figures_only: bool = False, local_metres: bool = False,
-            limits: Optional[Limits] = None,
+            depths: bool = False, limits: Optional[Limits] = None,
             progress: Optional[ProgressFn] = None) -> Comparison:
     """Measures an asset's file against the model that it was cooked from, in 26 views of `size`
     pixels a side and random ones; `up` and `more` as it was cooked. A model that the asset does not
     name as its source is refused, but with `any_model`. With `figures_only` the report has no
     levels beyond the finest, and no details, which take most of the time. With `local_metres` grids
-    in degrees become metres, true at the latitude of the first one's middle. Raises Error."""
+    in degrees become metres, true at the latitude of the first one's middle; with `depths` values
+    of grids are depths, positive downwards. Raises Error."""
     desc, result = ffi.new("gtx_compare_desc *"), ffi.new("gtx_compare_result *")
     if up not in ("y", "z"):
         raise ValueError("up is y or z")
     native.fill(desc, dict(size=size, levels=levels, threads=threads, z_up=up == "z",
                            random_views=random_views, seed=seed,
                            any_model=any_model, figures_only=figures_only,
-                           local_metres=local_metres))
+                           local_metres=local_metres, depths=depths))
     others, kept = _names([native.path_of(path) for path in more])
     desc.more, desc.more_count = others, len(kept)
     paths = native.path_of(asset), native.path_of(model)
