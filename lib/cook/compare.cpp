@@ -136,19 +136,20 @@ Models read_compared(const char *model, const gtx_compare_desc &desc, Task &task
                         {bool(desc.local_metres), bool(desc.depths)}, task);
 }
 
-void compare_models(const ShownAt &shown, uint32_t levels, Models &models,
+void compare_models(const ShownAt &shown, uint32_t levels, bool closed, Models &models,
                     const gtx_compare_desc &desc, Task &task, gtx_compare_result *result,
                     gtx_report *report)
 {
     Mesh mesh = import_models(models, desc.z_up, task);
     CleanReport clean;
     task.begin("clean");
-    mesh = clean_mesh(std::move(mesh), task, clean);
+    mesh = clean_mesh(std::move(mesh), task, clean, closed);
 
     CompareOptions options;
     options.size = desc.size ? desc.size : 1024;
     options.levels = desc.figures_only ? 1 : desc.levels ? desc.levels : levels;
     options.details = !desc.figures_only;
+    options.cut = closed;
     options.random_views = desc.random_views;
     options.seed = desc.seed;
     task.begin("measure");
@@ -179,8 +180,8 @@ static void compare_files(const gtx_asset *asset, const char *asset_path, const 
     Models models = read_compared(model, desc, task);
     if (!desc.any_model)
         require_source(asset, models);
-    compare_models([asset](double) { return Assets{asset}; }, info.mip_count, models, desc, task,
-                   result, report);
+    compare_models([asset](double) { return Assets{asset}; }, info.mip_count, was_closed(asset),
+                   models, desc, task, result, report);
 }
 
 } // namespace gtx

@@ -71,6 +71,13 @@ bool read_source_hash(const gtx_asset *asset, uint64_t &hash)
     return true;
 }
 
+bool was_closed(const gtx_asset *asset)
+{
+    const auto meta = parse_meta(asset);
+    return meta.is_object() && meta.contains("options") && meta["options"].is_object() &&
+           meta["options"].contains("closed") && meta["options"]["closed"] == true;
+}
+
 bool read_meta(const gtx_asset *asset, uint64_t &key, std::bitset<GTX_WARNING_COUNT> &warnings)
 {
     const auto meta = parse_meta(asset);

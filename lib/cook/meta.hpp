@@ -13,5 +13,7 @@ std::string write_meta(const Options &options, const CookFacts &facts);
 bool read_meta(const gtx_asset *asset, uint64_t &key, std::bitset<GTX_WARNING_COUNT> &warnings);
 /* The hash of the models' content that it was cooked from; false when META does not tell. */
 bool read_source_hash(const gtx_asset *asset, uint64_t &hash);
+/* Whether META tells that it was cooked as a part of a closed surface. */
+bool was_closed(const gtx_asset *asset);
 
 } // namespace gtx

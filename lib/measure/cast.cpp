@@ -165,7 +165,7 @@ void AssetView::cast_row(const View &view, uint32_t j, Vector<ViewHit> &hits,
     cast_nearest(view, j, again, 0, shown);
     for (size_t k = 0; k < again.size(); ++k) {
         ViewHit &hit = hits[again[k]];
-        if (!(shown[k].t - hit.t <= LEAK_STEPS * height_step(hit)))
+        if (!view.culls && !(shown[k].t - hit.t <= LEAK_STEPS * height_step(hit)))
             crossings[again[k]] = Crossing::leak;
         hit = shown[k];
     }

@@ -71,7 +71,10 @@ static Vector<Scene> make_scenes(const ShownAt &shown, const Extent &extent,
 {
     Vector<Scene> scenes;
     auto views_of = [&](uint32_t size) {
-        return comparison_views(extent, size, options.random_views, options.seed);
+        Vector<View> all = comparison_views(extent, size, options.random_views, options.seed);
+        for (View &view : all)
+            view.culls = options.cut;
+        return all;
     };
     Vector<View> views = views_of(options.size);
     const Assets finest = shown(0);

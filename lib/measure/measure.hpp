@@ -88,6 +88,7 @@ struct CompareOptions {
     uint32_t levels = 1;         /* levels of detail to evaluate */
     bool surface = true;         /* measure `error` and `seams` too */
     bool details = true;         /* evaluate what the runtime would draw too */
+    bool cut = false;            /* out of a closed surface: its backs are not there */
     uint32_t random_views = 0;   /* beside the 26 fixed ones, of this seed */
     uint32_t seed = 0;
     Vector<PixelFault> *faults = nullptr;     /* appended to: every fault of every level and

@@ -47,9 +47,21 @@ bool is_cut(const Mesh &mesh, size_t triangle, const double weight[3], double fo
     return sample_surface(mesh, triangle, w, footprint).cut < 0;
 }
 
+static bool is_two_sided(const Mesh &mesh, uint32_t triangle)
+{
+    return !mesh.flags.empty() && (mesh.flags[triangle] & TRIANGLE_TWO_SIDED);
+}
+
+static bool is_front(const Mesh &mesh, const View &view, uint32_t triangle)
+{
+    return is_two_sided(mesh, triangle) || dot(mesh.area_vector(triangle), view.toward) > 0;
+}
+
 static void draw(const Mesh &mesh, const View &view, const Vec3d v[3], uint32_t triangle,
                  MeshImage &image)
 {
+    if (view.culls && !is_front(mesh, view, triangle))
+        return;
     const uint32_t size = view.size;
     auto x = std::minmax({v[0].x, v[1].x, v[2].x}), y = std::minmax({v[0].y, v[1].y, v[2].y});
     auto z = std::minmax({v[0].z, v[1].z, v[2].z});
@@ -71,11 +83,6 @@ static void draw(const Mesh &mesh, const View &view, const Vec3d v[3], uint32_t 
     }
 }
 
-static bool is_two_sided(const Mesh &mesh, uint32_t triangle)
-{
-    return !mesh.flags.empty() && (mesh.flags[triangle] & TRIANGLE_TWO_SIDED);
-}
-
 static MeshImage blank_image(uint32_t size)
 {
     const size_t pixels = size_t(size) * size;
@@ -91,7 +98,7 @@ static void find_fronts(const Mesh &mesh, const View &view, MeshImage &image)
     for (size_t at = 0; at < image.triangle.size(); ++at) {
         uint32_t t = image.triangle[at];
         if (t != NO_HIT)
-            image.front[at] = is_two_sided(mesh, t) || dot(mesh.area_vector(t), view.toward) > 0;
+            image.front[at] = is_front(mesh, view, t);
     }
 }
 

@@ -24,6 +24,7 @@ struct View {
     Vec3d middle;                /* of the image plane */
     double pixel = 1;            /* its side */
     uint32_t size = 0;           /* pixels along a side of the image */
+    bool culls = false;          /* backs of triangles, but two-sided ones: sight passes them */
 
     /* The centre of a pixel on the image plane; rows go down. */
     Vec3d at(uint32_t i, uint32_t j) const

@@ -3,6 +3,7 @@
 
 #include "cook/compare.hpp"
 #include "cook/embedded.hpp"
+#include "cook/meta.hpp"
 #include "world/facts.hpp"
 
 #include "base/alloc.h"
@@ -146,7 +147,7 @@ void compare_world(const std::string &folder, const char *model, double tile_err
     task.begin("import");
     Tiles tiles(folder, task, about);
     try {
-        tiles.within(tile_error);
+        const bool closed = was_closed(tiles.within(tile_error)[0]);
         const std::string source = desc.more_count ? "gtx compare" : model;
         about = source;
         Models models = read_compared(model, desc, task);
@@ -155,7 +156,7 @@ void compare_world(const std::string &folder, const char *model, double tile_err
             about = source;
             return assets;
         };
-        compare_models(shown, tiles.levels(), models, desc, task, result, report);
+        compare_models(shown, tiles.levels(), closed, models, desc, task, result, report);
     } catch (...) {
         tiles.throw_refusal();
         throw;
