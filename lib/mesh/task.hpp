@@ -4,6 +4,7 @@
 
 #include "base/warnings.h"
 #include "mesh/memory.hpp"
+#include "mesh/workers.hpp"
 
 #include <geotex/geotex.h>
 
@@ -152,6 +153,7 @@ private:
     float reported_ = 0;
     std::thread::id caller_;
     std::atomic<bool> cancelled_{false};
+    Workers workers_;
 };
 
 } // namespace gtx
