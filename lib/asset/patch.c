@@ -3,6 +3,9 @@
 
 #include "base/bytes.h"
 
+/* Whose points are computed together; a whole patch's may not fit. */
+enum { COLUMNS = 64 };
+
 void gtx_invert_affine(double (*map)[4], double (*out)[4])
 {
     double cofactor[3][3], det = 0;
@@ -49,43 +52,65 @@ static uint32_t code_at(const gtx_code_map *codes, uint32_t x, uint32_t y)
 static void include_point(gtx_patch_span *span, const double point[3])
 {
     for (int k = 0; k < 3; ++k) {
-        span->low[k] = fmin(span->low[k], point[k]);
-        span->high[k] = fmax(span->high[k], point[k]);
+        span->low[k] = point[k] < span->low[k] ? point[k] : span->low[k];
+        span->high[k] = point[k] > span->high[k] ? point[k] : span->high[k];
     }
     ++span->coded;
 }
 
-static double distance_to(const double point[3], const float centre[3])
+static double square_to(const double point[3], const float centre[3])
 {
     double square = 0;
     for (int k = 0; k < 3; ++k)
         square += (point[k] - centre[k]) * (point[k] - centre[k]);
-    return sqrt(square);
+    return square;
+}
+
+/* Points of columns x to x + count - 1: their bounds, or the largest square of a distance to the
+ * sphere's centre. Rounds as gtx_texel_point does. */
+static void measure_columns(const gtx_patch *patch, const gtx_code_map *codes, uint32_t x,
+                            uint32_t count, gtx_patch_span *span, double *square)
+{
+    double along[COLUMNS][3];
+    for (uint32_t i = 0; i < count; ++i) {
+        const double a = (x + i + 0.5) / patch->rect[2] * patch->extent_x;
+        for (int k = 0; k < 3; ++k)
+            along[i][k] = patch->origin[k] + a * patch->axis_x[k];
+    }
+    for (uint32_t y = 0; y < patch->rect[3]; ++y) {
+        const double b = (y + 0.5) / patch->rect[3] * patch->extent_y;
+        for (uint32_t i = 0; i < count; ++i) {
+            const uint32_t code = code_at(codes, x + i, y);
+            if (!code)
+                continue;
+            const double c = gtx_code_height(code, codes->height_bits) * patch->extent_z;
+            double point[3];
+            for (int k = 0; k < 3; ++k)
+                point[k] = along[i][k] + b * patch->axis_y[k] + c * patch->axis_z[k];
+            if (span) {
+                include_point(span, point);
+            } else {
+                const double of_point = square_to(point, patch->sphere);
+                *square = of_point > *square ? of_point : *square;
+            }
+        }
+    }
 }
 
 gtx_patch_span gtx_measure_patch(gtx_patch *patch, const gtx_code_map *codes)
 {
     const uint32_t w = patch->rect[2], h = patch->rect[3];
     gtx_patch_span span = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, 0};
-    double radius = 0;
+    double square = 0;
     for (int pass = 0; pass < 2; ++pass) {
-        for (uint32_t y = 0; y < h; ++y)
-            for (uint32_t x = 0; x < w; ++x) {
-                const uint32_t code = code_at(codes, x, y);
-                double point[3];
-                if (!code)
-                    continue;
-                gtx_texel_point(patch, x, y, gtx_code_height(code, codes->height_bits), point);
-                if (pass)
-                    radius = fmax(radius, distance_to(point, patch->sphere));
-                else
-                    include_point(&span, point);
-            }
+        for (uint32_t x = 0; x < w; x += COLUMNS)
+            measure_columns(patch, codes, x, w - x < COLUMNS ? w - x : COLUMNS,
+                            pass ? NULL : &span, &square);
         for (int k = 0; k < 3 && span.coded; ++k)
             patch->sphere[k] = (float)((span.low[k] + span.high[k]) / 2);
     }
     patch->coverage = (float)((double)span.coded / ((double)w * h));
     if (span.coded)
-        patch->sphere[3] = fmaxf((float)(radius * (1 + 1e-6)), 1e-30f);
+        patch->sphere[3] = fmaxf((float)(sqrt(square) * (1 + 1e-6)), 1e-30f);
     return span;
 }

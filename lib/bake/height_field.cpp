@@ -50,19 +50,20 @@ bool HeightField::field_above(const Vec3d &point, double &above, double &trim) c
     const double u = across(0, from), v = across(1, from);
     if (!(u >= 0 && v >= 0 && u < w - 1 && v < h - 1))
         return false;
-    const CellPoint place = {at(int(u), int(v)), u - int(u), v - int(v)};
-    double codes[4], mean = 0;
-    for (size_t k = 0; k < 4; ++k) {
-        const uint32_t of_texel = code(corner(place, k));
-        if (!of_texel)
-            return false;
-        codes[k] = of_texel;
-    }
+    const size_t cell = at(int(u), int(v));
+    const uint32_t codes[4] = {code(cell), code(cell + 1), code(cell + row_),
+                               code(cell + row_ + 1)};
+    if (!codes[0] || !codes[1] || !codes[2] || !codes[3])
+        return false;
+    const double x = u - int(u), y = v - int(v);
+    const double weights[4] = {(1 - x) * (1 - y), x * (1 - y), (1 - x) * y, x * y};
+    const uint8_t *first = trim_ + cell, *second = first + row_;
+    const uint8_t trims[4] = {first[0], first[1], second[0], second[1]};
+    double mean = 0;
     trim = 0;
     for (size_t k = 0; k < 4; ++k) {
-        const double weight = place.weight(k);
-        mean += weight * codes[k];
-        trim += weight * gtx_trim_distance(trim_[corner(place, k)]);
+        mean += weights[k] * codes[k];
+        trim += weights[k] * gtx_trim_distance(trims[k]);
     }
     above = height(mean) - dot(dual[2], from);
     return true;

@@ -181,6 +181,13 @@ bool Bridges::bridges(Jumps jumps, size_t cell)
     constexpr double REACH = 1.5;
     const Outline &outline = field_.outline;
     std::array<size_t, 4> corner = corners(cell);
+    double low = INFINITY, high = -INFINITY;
+    for (size_t texel : corner) {
+        low = std::min(low, cover_.height[texel]);
+        high = std::max(high, cover_.height[texel]);
+    }
+    if (high - low <= jump_)
+        return false;
     auto triangle = [&](size_t texel) {
         uint32_t t = cover_.triangle[texel];
         return t != NO_TRIANGLE ? t : outline.edges[outline.nearest[texel]].triangle;

@@ -53,7 +53,7 @@ constexpr double SAMPLES = 16, SAMPLES_OF_ALL = 1 << 24;
 
 struct Observation {
     uint32_t texel;             /* the lower corner of its cell */
-    float weight[4];            /* of the cell's four texels */
+    double weight[4];           /* of the cell's four texels */
     double height;
     double counts;              /* in the sum of squares */
     double facing;              /* the cosine that turns depths into distances */
@@ -84,9 +84,9 @@ static void observe(const ChartField &field, const Vec3d &at, Observation o,
                     Vector<Observation> &out)
 {
     const Grid &grid = field.flat.grid;
-    int i = int(std::floor(at.x)), j = int(std::floor(at.y));
-    if (i < 0 || j < 0 || i + 1 >= grid.w || j + 1 >= grid.h)
+    if (!(at.x >= 0 && at.y >= 0 && at.x < grid.w - 1 && at.y < grid.h - 1))
         return;
+    const int i = int(at.x), j = int(at.y);
     uint32_t texel = uint32_t(j) * uint32_t(grid.w) + uint32_t(i);
     const uint32_t corner[4] = {texel, texel + 1, texel + uint32_t(grid.w),
                                 texel + uint32_t(grid.w) + 1};
@@ -227,14 +227,18 @@ double fit_heights(const Job &job, ChartField &field)
         double pull, weight;
     };
     Vector<Step> steps(sampled.size());
+    Vector<double> even(sampled.size()), sunk(sampled.size()); /* what a texel's sample weighs */
+    for (size_t i = 0; i < sampled.size(); ++i) {
+        const uint32_t t = cover.triangle[i]; /* NO_TRIANGLE is the largest of all */
+        const double weight = t < chart.core ? 1 : OVERLAP_COUNTS;
+        const double facing = t == NO_TRIANGLE || job.sharp ? 1 : facings[t] * facings[t];
+        even[i] = weight * facing;
+        sunk[i] = t == NO_TRIANGLE ? weight : weight * (facing * SUNK);
+    }
     for (int round = 0; round < ROUNDS; ++round) {
         for (size_t i = 0; i < sampled.size(); ++i) {
             const double residual = sampled[i] - cover.height[i];
-            const uint32_t t = cover.triangle[i]; /* NO_TRIANGLE is the largest of all */
-            double weight = t < chart.core ? 1 : OVERLAP_COUNTS;
-            if (t != NO_TRIANGLE)
-                weight *= (job.sharp ? 1 : facings[t] * facings[t]) *
-                          (residual > leeway ? SUNK : 1);
+            const double weight = residual > leeway ? sunk[i] : even[i];
             steps[i] = {weight * residual, weight};
         }
         for (const Observation &o : observations) {
@@ -244,11 +248,15 @@ double fit_heights(const Job &job, ChartField &field)
                 residual -= o.weight[k] * cover.height[corner[k]];
             const double distance = residual * (job.sharp ? 1 : o.facing);
             const double trust = o.counts * (distance > leeway ? BELOW : 1);
+            double weight[4], pull[4];
+            for (int k = 0; k < 4; ++k) {
+                weight[k] = trust * o.weight[k];
+                pull[k] = weight[k] * residual;
+            }
             for (int k = 0; k < 4; ++k) {
                 Step &step = steps[corner[k]];
-                const double weight = trust * o.weight[k];
-                step.pull += weight * residual;
-                step.weight += weight; /* row sums: no step overshoots */
+                step.pull += pull[k];
+                step.weight += weight[k]; /* row sums: no step overshoots */
             }
         }
         for (size_t i = 0; i < sampled.size(); ++i)

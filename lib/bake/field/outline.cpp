@@ -103,34 +103,45 @@ struct DistanceField {
     }
 
     /* Passes nearest edges on across the grid (Danielsson 1980, with edges in place of points).
-     * Most neighbours have the same one: `last` was offered just now. */
+     * Most neighbours have the same one. */
     void sweep(bool down)
     {
         const int w = grid.w;
+        const Vector<uint32_t> none(size_t(w), NO_EDGE);
         for (int row = 0; row < grid.h; ++row) {
             const int j = down ? row : grid.h - 1 - row;
-            const uint32_t *here = &outline.nearest[size_t(j) * w];
-            const uint32_t *back = down ? here - w : here + w;
+            uint32_t *here = &outline.nearest[size_t(j) * w];
+            float *squares = &outline.distance[size_t(j) * w];
+            const uint32_t *back = !row ? none.data() : down ? here - w : here + w;
             cancel_point();
+            uint32_t beside = NO_EDGE, edges[3] = {NO_EDGE, NO_EDGE, back[0]};
+            auto take = [&](int i, uint32_t edge) {
+                if (edge == beside || edge == NO_EDGE)
+                    return;
+                const float square = float(lines[edge].distance_square(i, j));
+                if (square < squares[i]) {
+                    squares[i] = square;
+                    beside = edge;
+                }
+            };
             for (int i = 0; i < w; ++i) {
-                uint32_t last = NO_EDGE;
-                auto offer_from = [&](uint32_t edge) {
-                    if (edge != last && edge != NO_EDGE)
-                        offer(i, j, last = edge);
-                };
-                if (i)
-                    offer_from(here[i - 1]);
-                if (!row)
-                    continue;
-                if (i)
-                    offer_from(back[i - 1]);
-                offer_from(back[i]);
-                if (i + 1 < w)
-                    offer_from(back[i + 1]);
+                const uint32_t before = beside;
+                edges[0] = edges[1];
+                edges[1] = edges[2];
+                edges[2] = i + 1 < w ? back[i + 1] : NO_EDGE;
+                beside = here[i];
+                take(i, before);
+                for (size_t k = 0; k < 3; ++k)
+                    if (edges[k] != before)
+                        take(i, edges[k]);
+                here[i] = beside;
             }
-            for (int i = w - 1; i-- > 0;)
-                if (here[i + 1] != NO_EDGE)
-                    offer(i, j, here[i + 1]);
+            for (int i = w - 1; i-- > 0;) {
+                const uint32_t before = here[i + 1];
+                beside = here[i];
+                take(i, before);
+                here[i] = beside;
+            }
         }
     }
 };
@@ -191,15 +202,19 @@ Vector<float> trim_distances(const FlatChart &chart, const Cover &core, const Co
 {
     const Grid &grid = chart.grid;
     Vector<float> trim(grid.texels());
-    for (size_t i = 0; i < trim.size(); ++i) {
+    for (size_t i = 0, column = 0, row = 0; i < trim.size(); ++i) {
         bool in_core = core.triangle[i] != NO_TRIANGLE && core.triangle[i] < chart.core;
         bool in_all = all.triangle[i] != NO_TRIANGLE;
         float to_core = in_core ? -core_outline.distance[i] : core_outline.distance[i];
         float to_all = in_all ? -all_outline.distance[i] : all_outline.distance[i];
         if (all_outline.edges[all_outline.nearest[i]].border)
             to_all += float(GTX_TRIM_SHOWN - BORDER_SHOWN);
-        double cut = grid.outside(double(i % size_t(grid.w)), double(i / size_t(grid.w)));
+        double cut = grid.outside(double(column), double(row));
         trim[i] = std::max({to_all, to_core - float(OVERLAP), float(cut - CUT_OVERLAP)});
+        if (++column == size_t(grid.w)) {
+            column = 0;
+            ++row;
+        }
     }
     for (const OutlineEdge &edge : core_outline.edges) {
         cancel_point();
