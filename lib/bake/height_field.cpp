@@ -51,9 +51,9 @@ bool HeightField::field_above(const Vec3d &point, double &above, double &trim) c
     if (!(u >= 0 && v >= 0 && u < w - 1 && v < h - 1))
         return false;
     const size_t cell = at(int(u), int(v));
-    const uint32_t codes[4] = {code(cell), code(cell + 1), code(cell + row_),
-                               code(cell + row_ + 1)};
-    if (!codes[0] || !codes[1] || !codes[2] || !codes[3])
+    const int codes[4] = {int(code(cell)), int(code(cell + 1)), int(code(cell + row_)),
+                          int(code(cell + row_ + 1))};
+    if (!(codes[0] && codes[1] && codes[2] && codes[3]))
         return false;
     const double x = u - int(u), y = v - int(v);
     const double weights[4] = {(1 - x) * (1 - y), x * (1 - y), (1 - x) * y, x * y};

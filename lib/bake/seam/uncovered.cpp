@@ -223,6 +223,8 @@ double Search::uncovered_share(size_t field, const FrameInverse &inverse, uint32
     const Mesh &mesh = job_.mesh;
     const HeightField &own = fields_[field];
     const Chart &chart = partition_.charts[fields_.patch(field)];
+    if (beyond_cut(chart, inverse, mesh, triangle, job_.pitch))
+        return 0;
     const Vec3d first = mesh.position(triangle, 0) - job_.anchor;
     const Vec3d e = mesh.position(triangle, 1) - job_.anchor - first;
     const Vec3d f = mesh.position(triangle, 2) - job_.anchor - first;
@@ -238,7 +240,6 @@ double Search::uncovered_share(size_t field, const FrameInverse &inverse, uint32
         return 0;
     std::optional<Vector<const HeightField *>> near;
     int uncovered = 0;
-    bool first_look = true;
     for (int j = 0; j < parts; ++j) {
         cancel_point();
         const Vec3d across = f * ((j + 1 / 3.) / parts);
@@ -248,9 +249,6 @@ double Search::uncovered_share(size_t field, const FrameInverse &inverse, uint32
             const bool by_own = has_cell(own, at, above);
             if (by_own && !steep)
                 continue;
-            if (std::exchange(first_look, false) &&
-                beyond_cut(chart, inverse, mesh, triangle, job_.pitch))
-                return 0;
             if (!in_core(chart, inverse, at.point + job_.anchor))
                 continue;
             if (!near)

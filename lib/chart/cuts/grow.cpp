@@ -56,23 +56,27 @@ public:
           price_(PATCH_PRICE * share), ahead_(relief.coarse > 1 ? 0 : AHEAD_SHARE * share),
           least_(std::max(MIN_CELLS, int(MIN_SIDE * std::sqrt(share))) / relief.coarse)
     {
+        const double steps = RANGE / plan_.steps * relief_.coarse;
+        relief_cost_ = RELIEF_COST * steps * steps;
     }
 
     Vector<CutNode> grow(Task &task);
 
 private:
+    /* The columns and the rows of a node where its parent has summed them up, or none. */
+    using LinesOf = std::array<Lines, 2>;
     struct Grown {
         CutNode node, child[2];
+        LinesOf lines[2];        /* of the children */
         bool has_children = false;
     };
-    Grown grow_node(CutNode node);
+    Grown grow_node(CutNode node, LinesOf lines);
     Vector<Lines> parts(const Rect &box, int axis, const Vector<int> &across) const;
     template <class Visit>
     void sweep(const Lines &lines, int axis, const Rect &region, const Cuts &cuts, Visit visit);
     double best_half(const Lines &along, const Lines &across, int axis, const Half &half);
-    Cut look_ahead(const CutNode &node, const Rect &box, const Lines lines[2],
-                   Vector<Cut> cuts);
-    double texels(const Rect &box, const Cuts &cuts, double &patches) const;
+    Cut look_ahead(const CutNode &node, const Rect &box, const LinesOf &lines,
+                   Vector<Cut> cuts, LinesOf of_child[2]);
     double area(const Slice &s, const Rect &region, const Cuts &cuts, double &patches) const;
     double relief(const Slice &s) const;
     double value(const Slice &s, const Rect &region, const Cuts &cuts) const
@@ -83,51 +87,40 @@ private:
 
     const Relief &relief_;
     const CutPlan &plan_;
-    double smallest_, price_, ahead_;
+    double smallest_, price_, ahead_, relief_cost_;
     int least_;
     Vector<Slice> above_;      /* of the sweep at hand */
 };
 
-/* Texels of a box, in as many patches as the longest side allows. */
-double Grower::texels(const Rect &box, const Cuts &cuts, double &patches) const
-{
-    double total = 1;
-    patches = 1;
-    for (int axis = 0; axis < 2; ++axis) {
-        unsigned n = unsigned(box.side(axis) * relief_.coarse) +
-                     plan_.overlap[!cuts[size_t(2 * axis)]] +
-                     plan_.overlap[!cuts[size_t(2 * axis + 1)]];
-        double side = n;
-        if (n > plan_.side) {
-            const unsigned rest = 2 * plan_.overlap[0], parts = 1 + (n - 1) / (plan_.side - rest);
-            side += parts * rest;
-            patches *= parts;
-        }
-        total *= side;
-    }
-    return total;
-}
-
-/* Texels of what lies in a region. */
+/* Texels of what lies in a region, in as many patches as the longest side allows. */
 double Grower::area(const Slice &s, const Rect &region, const Cuts &cuts, double &patches) const
 {
     patches = 0;
     if (s.box.empty())
         return 0;
-    Cuts own; /* elsewhere the chart itself ends */
+    int sides[2];
     for (int axis = 0; axis < 2; ++axis) {
-        size_t low = size_t(2 * axis);
-        own[low] = cuts[low] && s.box.low[axis] == region.low[axis];
-        own[low + 1] = cuts[low + 1] && s.box.high[axis] == region.high[axis];
+        const size_t low = size_t(2 * axis);
+        const bool cut[2] = {cuts[low] && s.box.low[axis] == region.low[axis],
+                             cuts[low + 1] && s.box.high[axis] == region.high[axis]};
+        sides[axis] = s.box.side(axis) * relief_.coarse + /* where none is the chart itself ends */
+                      int(plan_.overlap[!cut[0]] + plan_.overlap[!cut[1]]);
     }
-    return texels(s.box, own, patches);
+    patches = 1;
+    for (int &side : sides)
+        if (side > int(plan_.side)) {
+            const int rest = int(2 * plan_.overlap[0]);
+            const int parts = 1 + (side - 1) / (int(plan_.side) - rest);
+            side += parts * rest;
+            patches *= parts;
+        }
+    return double(sides[0]) * sides[1];
 }
 
 /* How much more a texel costs where heights resolve less than texels. */
 double Grower::relief(const Slice &s) const
 {
-    double steps = RANGE / plan_.steps * relief_.coarse;
-    return 1 + RELIEF_COST * steps * steps * s.moments.residual();
+    return 1 + relief_cost_ * s.moments.residual();
 }
 
 /* The columns (axis 0) or rows of a box, in parts that end at the coordinates `across` of the other
@@ -176,15 +169,14 @@ template <class Visit>
 void Grower::sweep(const Lines &lines, int axis, const Rect &region, const Cuts &cuts, Visit visit)
 {
     const Vector<Slice> &slices = lines.slices;
-    above_.assign(slices.size() + 1, {});
-    for (size_t i = slices.size(); i-- > 0;) {
-        above_[i] = above_[i + 1];
-        above_[i].add(slices[i]);
-    }
+    above_.resize(slices.size() + 1);
+    above_.back() = {};
+    for (size_t i = slices.size(); i-- > 0;)
+        above_[i] = above_[i + 1].plus(slices[i]);
     const Rect &box = above_[0].box;
     Slice below;
     for (size_t i = 1; i < slices.size(); ++i) {
-        below.add(slices[i - 1]);
+        below = below.plus(slices[i - 1]);
         const int at = lines.first + int(i);
         if (at < box.low[axis] + least_ || at > box.high[axis] - least_)
             continue;
@@ -218,9 +210,9 @@ double Grower::best_half(const Lines &along, const Lines &across, int axis, cons
 }
 
 /* The best of the first few cuts that are not beside each other, each with the best cut that may
- * follow on its two sides. */
-Cut Grower::look_ahead(const CutNode &node, const Rect &box, const Lines lines[2],
-                       Vector<Cut> cuts)
+ * follow on its two sides; and the lines of these across the cut. */
+Cut Grower::look_ahead(const CutNode &node, const Rect &box, const LinesOf &lines,
+                       Vector<Cut> cuts, LinesOf of_child[2])
 {
     Vector<Cut> tried;
     while (tried.size() < CANDIDATES && !cuts.empty()) {
@@ -243,28 +235,32 @@ Cut Grower::look_ahead(const CutNode &node, const Rect &box, const Lines lines[2
         Vector<Lines> low = parts(box, !axis, across), high = low;
         for (size_t part = 1; part < across.size(); ++part)
             for (size_t i = 0; i < low[part].slices.size(); ++i) {
-                low[part].slices[i].add(low[part - 1].slices[i]);
+                low[part].slices[i] = low[part].slices[i].plus(low[part - 1].slices[i]);
                 size_t back = across.size() - 1 - part;
-                high[back].slices[i].add(high[back + 1].slices[i]);
+                high[back].slices[i] = high[back].slices[i].plus(high[back + 1].slices[i]);
             }
-        const Vector<Slice> &all = lines[axis].slices;
+        const Lines &whole = lines[size_t(axis)];
         for (size_t part = 0; part + 1 < across.size(); ++part) {
-            auto middle = all.begin() + (across[part] - lines[axis].first);
-            Lines along[2] = {{lines[axis].first, {all.begin(), middle}},
-                              {across[part], {middle, all.end()}}};
+            auto middle = whole.slices.begin() + (across[part] - whole.first);
+            Lines along[2] = {{whole.first, {whole.slices.begin(), middle}},
+                              {across[part], {middle, whole.slices.end()}}};
             double sum = 0;
             for (int side = 0; side < 2; ++side)
                 sum += best_half(along[side], side ? high[part + 1] : low[part], axis,
                                  half_of(node.region, node.cuts, axis, across[part], side));
             Cut cut = {sum, axis, across[part]};
-            if (cut < best)
+            if (cut < best) {
                 best = cut;
+                of_child[0] = of_child[1] = {};
+                of_child[0][size_t(!axis)] = std::move(low[part]);
+                of_child[1][size_t(!axis)] = std::move(high[part + 1]);
+            }
         }
     }
     return best;
 }
 
-Grower::Grown Grower::grow_node(CutNode node)
+Grower::Grown Grower::grow_node(CutNode node, LinesOf lines)
 {
     Grown out;
     Rect box;
@@ -272,12 +268,13 @@ Grower::Grown Grower::grow_node(CutNode node)
         box.low[k] = std::max(node.region.low[k], node.tight.low[k]);
         box.high[k] = std::max(box.low[k], std::min(node.region.high[k], node.tight.high[k]));
     }
-    Lines lines[2];
     Vector<Cut> cuts;
     Slice all;
     for (int axis = 0; axis < 2; ++axis) {
-        lines[axis] = std::move(parts(box, axis, {box.high[!axis]})[0]);
-        sweep(lines[axis], axis, node.region, node.cuts,
+        Lines &along = lines[size_t(axis)];
+        if (along.slices.empty())
+            along = std::move(parts(box, axis, {box.high[!axis]})[0]);
+        sweep(along, axis, node.region, node.cuts,
               [&](int at, const Slice &below, const Slice &above, const Half &low,
                   const Half &high) {
                   const Rect &whole = above_[0].box;
@@ -293,8 +290,13 @@ Grower::Grown Grower::grow_node(CutNode node)
     node.cost = area(all, node.region, node.cuts, patches) * relief(all);
     const bool fits = patches <= 1;
     if (!cuts.empty() && !(fits && node.cost < smallest_)) {
-        const Cut cut = node.cost < ahead_ ? look_ahead(node, box, lines, std::move(cuts))
-                                           : *std::min_element(cuts.begin(), cuts.end());
+        const Cut cut = node.cost < ahead_
+                            ? look_ahead(node, box, lines, std::move(cuts), out.lines)
+                            : *std::min_element(cuts.begin(), cuts.end());
+        const Lines &along = lines[size_t(cut.axis)];
+        const auto middle = along.slices.begin() + (cut.at - along.first);
+        out.lines[0][size_t(cut.axis)] = {along.first, {along.slices.begin(), middle}};
+        out.lines[1][size_t(cut.axis)] = {cut.at, {middle, along.slices.end()}};
         for (int side = 0; side < 2; ++side) {
             Half half = half_of(node.region, node.cuts, cut.axis, cut.at, side);
             out.child[side].region = half.region;
@@ -316,22 +318,26 @@ Vector<CutNode> Grower::grow(Task &task)
     CutNode root;
     root.region = root.tight = {{0, 0}, {relief_.size[0], relief_.size[1]}};
     Vector<CutNode> nodes = {root};
+    Vector<LinesOf> lines(1), below; /* of the nodes of a level, and of their children */
     Vector<Grown> level;
     for (size_t first = 0; first < nodes.size(); first += level.size()) {
         level.resize(nodes.size() - first);
         if (at_once)
             task.parallel(level.size(), [&](size_t n) {
-                level[n] = Grower(*this).grow_node(nodes[first + n]);
+                level[n] = Grower(*this).grow_node(nodes[first + n], std::move(lines[n]));
             }, 0, 0);
+        below.clear();
         for (size_t n = 0; n < level.size(); ++n) {
             if (!at_once)
-                level[n] = grow_node(nodes[first + n]);
+                level[n] = grow_node(nodes[first + n], std::move(lines[n]));
             nodes[first + n] = level[n].node;
             for (int side = 0; side < 2 && level[n].has_children; ++side) {
                 nodes[first + n].child[side] = int(nodes.size());
                 nodes.push_back(level[n].child[side]);
+                below.push_back(std::move(level[n].lines[side]));
             }
         }
+        lines.swap(below);
     }
     return nodes;
 }

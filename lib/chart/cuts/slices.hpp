@@ -9,10 +9,10 @@ namespace gtx {
 struct Moments {
     double n = 0, u = 0, v = 0, h = 0, uu = 0, uv = 0, vv = 0, uh = 0, vh = 0, hh = 0;
 
-    void add(const Moments &m)
+    Moments plus(const Moments &m) const
     {
-        n += m.n, u += m.u, v += m.v, h += m.h;
-        uu += m.uu, uv += m.uv, vv += m.vv, uh += m.uh, vh += m.vh, hh += m.hh;
+        return {n + m.n,   u + m.u,   v + m.v,   h + m.h,   uu + m.uu,
+                uv + m.uv, vv + m.vv, uh + m.uh, vh + m.vh, hh + m.hh};
     }
     /* Mean square of what the least-squares plane leaves. */
     double residual() const
@@ -37,13 +37,11 @@ struct Slice {
     Moments moments;
     Rect box = NOTHING;
 
-    void add(const Slice &s)
+    Slice plus(const Slice &s) const
     {
-        moments.add(s.moments);
-        for (int k = 0; k < 2; ++k) {
-            box.low[k] = std::min(box.low[k], s.box.low[k]);
-            box.high[k] = std::max(box.high[k], s.box.high[k]);
-        }
+        return {moments.plus(s.moments),
+                {{std::min(box.low[0], s.box.low[0]), std::min(box.low[1], s.box.low[1])},
+                 {std::max(box.high[0], s.box.high[0]), std::max(box.high[1], s.box.high[1])}}};
     }
 };
 
@@ -82,7 +80,7 @@ struct Line {
 
 /* Columns or rows of a part of the chart, in order. */
 struct Lines {
-    int first; /* coordinate of the first */
+    int first = 0; /* coordinate of the first */
     Vector<Slice> slices;
 };
 
