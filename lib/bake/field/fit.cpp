@@ -55,7 +55,7 @@ struct Observation {
     uint32_t texel;             /* the lower corner of its cell */
     double weight[4];           /* of the cell's four texels */
     double height;
-    double counts;              /* in the sum of squares */
+    double counts[2];           /* in the sum of squares: as it is, and below the source */
     double facing;              /* the cosine that turns depths into distances */
     bool core;
 };
@@ -130,7 +130,8 @@ static Vector<Observation> observe_edges(const Job &job, const ChartField &field
             o.facing = facings[t];
             const double steeper = mate == NO_TRIANGLE ? o.facing
                                                        : std::min(o.facing, facings[mate]);
-            o.counts = (o.core ? 1 : OVERLAP_COUNTS) * (job.sharp ? 1 : steeper * steeper);
+            o.counts[0] = (o.core ? 1 : OVERLAP_COUNTS) * (job.sharp ? 1 : steeper * steeper);
+            o.counts[1] = o.counts[0] * BELOW;
             for (int s = 0; s < steps; ++s)
                 observe(field, from + along * ((s + 0.5) / steps), o, out);
         }
@@ -247,7 +248,7 @@ double fit_heights(const Job &job, ChartField &field)
             for (int k = 0; k < 4; ++k)
                 residual -= o.weight[k] * cover.height[corner[k]];
             const double distance = residual * (job.sharp ? 1 : o.facing);
-            const double trust = o.counts * (distance > leeway ? BELOW : 1);
+            const double trust = o.counts[distance > leeway];
             double weight[4], pull[4];
             for (int k = 0; k < 4; ++k) {
                 weight[k] = trust * o.weight[k];

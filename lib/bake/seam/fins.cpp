@@ -35,6 +35,8 @@ constexpr double NEARBY = 1;
 constexpr uint8_t PARTS = 4;
 /* A limit on time: looks at the source, and at other height fields, for a sample. */
 constexpr size_t LOOKS = 256;
+/* Of a short loop, that take as long as a cell. */
+constexpr size_t CELL_TURNS = 16;
 
 namespace {
 
@@ -129,10 +131,10 @@ bool Fins::is_long(size_t cell) const
 
 void Fins::collect()
 {
-    for (int j = 0; j + 1 < own_.h; ++j)
+    for (int j = 0; j + 1 < own_.h; ++j) {
+        cancel_point(CELL_TURNS * size_t(own_.w));
         for (int i = 0; i + 1 < own_.w; ++i) {
             const size_t cell = own_.at(i, j);
-            cancel_point();
             if (!is_long(cell))
                 continue;
             for (uint8_t y = 0; y <= PARTS; ++y)
@@ -143,6 +145,7 @@ void Fins::collect()
                         samples_.push_back(sample);
                 }
         }
+    }
 }
 
 /* Whether any comes to a point, in so many texels outside its outline, or near it. */
@@ -305,11 +308,11 @@ Vector<uint8_t> Fins::take_back(const HeightFields &fields)
         if (sample.lies >= AWAY_FROM_IT)
             hide(sample.place());
     size_t next = 0;
-    for (int j = 0; j + 1 < own_.h; ++j)
+    for (int j = 0; j + 1 < own_.h; ++j) {
+        cancel_point(CELL_TURNS * size_t(own_.w));
         for (int i = 0; i + 1 < own_.w; ++i) {
             const size_t cell = own_.at(i, j);
             const std::array<size_t, 4> at = corners(cell);
-            cancel_point();
             while (next < samples_.size() && samples_[next].cell < cell)
                 ++next;
             if (has_codes(cell) && std::any_of(at.begin(), at.end(), [&](size_t t) {
@@ -317,6 +320,7 @@ Vector<uint8_t> Fins::take_back(const HeightFields &fields)
                 }))
                 next = show_cell(cell, next, fields, budget);
         }
+    }
     return std::move(trim_);
 }
 

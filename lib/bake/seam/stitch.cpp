@@ -22,6 +22,9 @@ constexpr double SLACK = 1;
 /* How readily texels at an outline move in each pass; those beyond it always do. */
 constexpr double PASSES[] = {0.1, 0.3, 1};
 constexpr int ROUNDS = 9; /* in a pass */
+/* Equations from one cancellation point to the next, and turns of a short loop that take as long as
+ * one. */
+constexpr size_t CANCEL_EACH = 64, EQUATION_TURNS = 16;
 /* A coarser texel, as a share of the diagonal, lets heights move no farther: they would be seen as
  * dents. */
 constexpr double COARSE = 0.002;
@@ -148,9 +151,10 @@ void Moves::solve(const Vector<Vector<const Tie *>> &open,
     });
     for (int round = 0; round < ROUNDS; ++round)
         for (const Vector<Equation> &some : equations_)
-            for (const Equation &equation : some) {
-                cancel_point();
-                project(equation, mobility);
+            for (size_t n = 0; n < some.size(); ++n) {
+                if (n % CANCEL_EACH == 0)
+                    cancel_point(EQUATION_TURNS * std::min(some.size() - n, CANCEL_EACH));
+                project(some[n], mobility);
             }
 }
 

@@ -140,20 +140,30 @@ Relief turn_relief(const Relief &relief, double turn, int coarse)
     }
     out.height.assign(size_t(out.size[0]) * size_t(out.size[1]), NAN);
     out.touched.assign(out.height.size(), 0);
+    struct Turned {
+        double c, s;
+    };
+    Vector<Turned> columns(size_t(relief.size[0]));
+    for (size_t i = 0; i < columns.size(); ++i) {
+        const double x = double(i) + 0.5 - w / 2;
+        columns[i] = {c * x, s * x};
+    }
+    const double middle[2] = {out.size[0] / 2., out.size[1] / 2.};
+    const int last[2] = {out.size[0] - 1, out.size[1] - 1};
     for (int j = 0; j < relief.size[1]; ++j) {
         cancel_point();
-        for (int i = 0; i < relief.size[0]; ++i) {
-            const size_t from = relief.at(i, j);
-            if (!relief.touched[from])
+        const double y = j + 0.5 - h / 2, cy = c * y, sy = s * y;
+        const uint8_t *touched = &relief.touched[relief.at(0, j)];
+        const float *heights = &relief.height[relief.at(0, j)];
+        for (size_t i = 0; i < columns.size(); ++i) {
+            if (!touched[i])
                 continue;
-            const double x = i + 0.5 - w / 2, y = j + 0.5 - h / 2;
-            const int column = int(c * x + s * y + out.size[0] / 2.);
-            const int row = int(c * y - s * x + out.size[1] / 2.);
-            const size_t to = out.at(std::clamp(column, 0, out.size[0] - 1),
-                                     std::clamp(row, 0, out.size[1] - 1));
+            const int column = int(columns[i].c + sy + middle[0]);
+            const int row = int(cy - columns[i].s + middle[1]);
+            const size_t to = out.at(std::clamp(column, 0, last[0]), std::clamp(row, 0, last[1]));
             out.touched[to] = 1;
-            if (!std::isnan(relief.height[from]))
-                out.height[to] = relief.height[from] / float(coarse);
+            if (!std::isnan(heights[i]))
+                out.height[to] = heights[i] / float(coarse);
         }
     }
     return out;

@@ -24,12 +24,15 @@ constexpr int PASSES = 4;
 /* The share of the area that is lost to slant where everything is seen along the nearest axis. */
 double slant(const Surface &surface, const Vector<Vec3d> &directions)
 {
+    constexpr size_t TURNS = 16; /* of a short loop, that take as long as a triangle */
+    cancel_point(TURNS * surface.facets.size());
+    const Vec3d &x = directions[0], &y = directions[2], &z = directions[4]; /* and opposites */
     double lost = 0, size = 0;
     for (const Facet &facet : surface.facets) {
-        cancel_point();
         const Vec3d normal(facet.normal);
-        lost += double(facet.size) *
-                (1 - dot(normal, directions[nearest_direction(directions, normal)]));
+        const double facing = std::max({std::abs(dot(normal, x)), std::abs(dot(normal, y)),
+                                        std::abs(dot(normal, z))});
+        lost += double(facet.size) * (1 - facing);
         size += double(facet.size);
     }
     return lost / size;
@@ -60,8 +63,9 @@ Vector<Vec3d> principal_directions(const Surface &surface)
     return with_opposites(axis[0], axis[1], axis[2]);
 }
 
-/* Lets triangles of small islands go over to a larger piece beside them that sees them well. */
-void give_up_islands(const Surface &surface, const Vector<Vec3d> &directions, double pitch,
+/* Lets triangles of small islands go over to a larger piece beside them that sees them well;
+ * whether any does. */
+bool give_up_islands(const Surface &surface, const Vector<Vec3d> &directions, double pitch,
                      Vector<uint32_t> &label)
 {
     Vector<uint32_t> piece = label;
@@ -70,6 +74,7 @@ void give_up_islands(const Surface &surface, const Vector<Vec3d> &directions, do
     for (size_t t = 0; t < label.size(); ++t)
         texels[piece[t]] += double(surface.facets[t].size) * mean / (pitch * pitch);
     const Vector<uint32_t> before = label;
+    bool any = false;
     for (size_t t = 0; t < label.size(); ++t) {
         cancel_point();
         double best = MIN_FACING;
@@ -84,9 +89,11 @@ void give_up_islands(const Surface &surface, const Vector<Vec3d> &directions, do
             if (facing > best) {
                 best = facing;
                 label[t] = before[n];
+                any = true;
             }
         }
     }
+    return any;
 }
 
 } // namespace
@@ -126,8 +133,8 @@ Vector<uint32_t> peel(Surface &surface, const Vector<Vec3d> &directions, double 
         }
         label[t] = uint32_t(nearest);
     }
-    for (int pass = 0; pass < PASSES; ++pass)
-        give_up_islands(surface, directions, pitch, label);
+    for (int pass = 0; pass < PASSES && give_up_islands(surface, directions, pitch, label);)
+        ++pass;
     count = connected_pieces(surface.whole, label);
     return label;
 }
