@@ -141,6 +141,14 @@ Point least_rectangle(const Vector<Point> &points)
     return best;
 }
 
+/* Two numbers that are computed with at once; each rounds as it would alone. */
+using Pair = double __attribute__((vector_size(2 * sizeof(double))));
+
+Pair place_of(const Point &p)
+{
+    return Pair{p.u, p.v};
+}
+
 /* A plane h = a u + b v + c. */
 struct Plane {
     double a = 0, b = 0, c = 0;
@@ -151,30 +159,29 @@ struct Plane {
  * one. */
 bool fit_plane(const Vector<Point> &points, double scaled, Vector<double> &weights, Plane &out)
 {
-    double w = 0, u = 0, v = 0, h = 0;
+    double w = 0, h = 0;
+    Pair middle = {0, 0}, square = {0, 0}, rise = {0, 0};
     for (size_t i = 0; i < points.size(); ++i) {
         const double weight = weights[i] *= scaled;
         w += weight;
-        u += weight * points[i].u;
-        v += weight * points[i].v;
+        middle += weight * place_of(points[i]);
         h += weight * points[i].h;
     }
-    u /= w, v /= w, h /= w;
-    double uu = 0, uv = 0, vv = 0, uh = 0, vh = 0;
+    middle /= w, h /= w;
+    double uv = 0;
     for (size_t i = 0; i < points.size(); ++i) {
-        double du = points[i].u - u, dv = points[i].v - v, dh = points[i].h - h;
-        uu += weights[i] * du * du;
-        uv += weights[i] * du * dv;
-        vv += weights[i] * dv * dv;
-        uh += weights[i] * du * dh;
-        vh += weights[i] * dv * dh;
+        const Pair off = place_of(points[i]) - middle, weighed = weights[i] * off;
+        square += weighed * off;
+        uv += weighed[0] * off[1];
+        rise += weighed * (points[i].h - h);
     }
+    const double uu = square[0], vv = square[1], uh = rise[0], vh = rise[1];
     double det = uu * vv - uv * uv;
     if (!(det > 1e-9 * uu * vv))
         return false;
     out.a = (uh * vv - vh * uv) / det;
     out.b = (vh * uu - uh * uv) / det;
-    out.c = h - out.a * u - out.b * v;
+    out.c = h - out.a * middle[0] - out.b * middle[1];
     return true;
 }
 

@@ -148,7 +148,7 @@ void find_discontinuities(const FlatRegion &flat, const LayerGrid &grid, float m
                     continue;
                 const Sample &a = *here, &b = here[axis ? width : 1];
                 float step = std::fabs(a.high - b.high);
-                if (!(b.high >= b.low && step > max_step) ||
+                if (!(step > max_step) || !(b.high >= b.low) ||
                     flat.joined(a.front, b.front, grid.first[0] + (i + x) / 2. + 0.5,
                                 grid.first[1] + (j + y) / 2. + 0.5, DISCONTINUITY_REACH))
                     continue;
@@ -261,15 +261,16 @@ LayerGrid make_layer_grid(const Surface &surface, const Region &region, const Fr
 }
 
 Layers find_layers(const Surface &surface, const Region &region, const Frame &frame, double pitch,
-                   Task &task)
+                   Task &task, bool discontinuities)
 {
     const LayerRule rule = layer_rule(surface, pitch);
     LayerGrid grid = make_layer_grid(surface, region, frame, pitch, task);
     Layers layers;
     for (const Sample &s : grid.samples)
         layers.samples += s.high >= s.low;
-    find_discontinuities(FlatRegion(surface, region, frame, pitch), grid, rule.step,
-                         layers.discontinuities);
+    if (discontinuities)
+        find_discontinuities(FlatRegion(surface, region, frame, pitch), grid, rule.step,
+                             layers.discontinuities);
     for (size_t at = 0; at < grid.samples.size(); ++at) {
         if (!(grid.samples[at].high - grid.samples[at].low > rule.apart))
             continue;

@@ -47,8 +47,9 @@ struct LayerGrid {
 LayerGrid make_layer_grid(const Surface &surface, const Region &region, const Frame &frame,
                           double pitch, Task &task);
 
+/* Without `discontinuities` it finds none. */
 Layers find_layers(const Surface &surface, const Region &region, const Frame &frame, double pitch,
-                   Task &task);
+                   Task &task, bool discontinuities = true);
 
 /* Whether adding one grid to another makes a fold or a depth discontinuity; `doubled` counts the
  * texel centres that would be covered twice and are not yet. */

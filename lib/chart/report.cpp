@@ -38,7 +38,7 @@ void report_final(const Surface &surface, const Vector<Region> &regions,
     };
     Vector<Count> counts(regions.size());
     for_each_region(regions, task, [&](size_t i) {
-        Layers layers = find_layers(surface, regions[i], frames[i], out.pitch, task);
+        Layers layers = find_layers(surface, regions[i], frames[i], out.pitch, task, false);
         counts[i] = {0, layers.samples, layers.doubled, !layers.folds.empty()};
         for (uint32_t t : regions[i].triangles)
             counts[i].inverted += is_inverted(surface, t, frames[i].z, out.pitch);

@@ -52,11 +52,12 @@ Half half_of(const Rect &region, const Cuts &cuts, int axis, int at, int side)
 class Grower {
 public:
     Grower(const Relief &relief, const CutPlan &plan, double share)
-        : relief_(relief), plan_(plan), smallest_(SMALLEST_SHARE * share),
+        : relief_(relief), plan_(plan),
+          overlap_{int(plan.overlap[1]), int(plan.overlap[0])}, smallest_(SMALLEST_SHARE * share),
           price_(PATCH_PRICE * share), ahead_(relief.coarse > 1 ? 0 : AHEAD_SHARE * share),
           least_(std::max(MIN_CELLS, int(MIN_SIDE * std::sqrt(share))) / relief.coarse)
     {
-        const double steps = RANGE / plan_.steps * relief_.coarse;
+        const double steps = RANGE / plan.steps * relief.coarse;
         relief_cost_ = RELIEF_COST * steps * steps;
     }
 
@@ -87,6 +88,7 @@ private:
 
     const Relief &relief_;
     const CutPlan &plan_;
+    const int overlap_[2];     /* at a side that is no cut, and at one */
     double smallest_, price_, ahead_, relief_cost_;
     int least_;
     Vector<Slice> above_;      /* of the sweep at hand */
@@ -99,12 +101,11 @@ double Grower::area(const Slice &s, const Rect &region, const Cuts &cuts, double
     if (s.box.empty())
         return 0;
     int sides[2];
-    for (int axis = 0; axis < 2; ++axis) {
+    for (int axis = 0; axis < 2; ++axis) { /* where none is a cut the chart itself ends */
         const size_t low = size_t(2 * axis);
-        const bool cut[2] = {cuts[low] && s.box.low[axis] == region.low[axis],
-                             cuts[low + 1] && s.box.high[axis] == region.high[axis]};
-        sides[axis] = s.box.side(axis) * relief_.coarse + /* where none is the chart itself ends */
-                      int(plan_.overlap[!cut[0]] + plan_.overlap[!cut[1]]);
+        sides[axis] = s.box.side(axis) * relief_.coarse +
+                      overlap_[cuts[low] & (s.box.low[axis] == region.low[axis])] +
+                      overlap_[cuts[low + 1] & (s.box.high[axis] == region.high[axis])];
     }
     patches = 1;
     for (int &side : sides)
