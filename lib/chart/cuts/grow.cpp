@@ -72,7 +72,6 @@ private:
         bool has_children = false;
     };
     Grown grow_node(CutNode node, LinesOf lines);
-    Vector<Lines> parts(const Rect &box, int axis, const Vector<int> &across) const;
     template <class Visit>
     void sweep(const Lines &lines, int axis, const Rect &region, const Cuts &cuts, Visit visit);
     double best_half(const Lines &along, const Lines &across, int axis, const Half &half);
@@ -122,46 +121,6 @@ double Grower::area(const Slice &s, const Rect &region, const Cuts &cuts, double
 double Grower::relief(const Slice &s) const
 {
     return 1 + relief_cost_ * s.moments.residual();
-}
-
-/* The columns (axis 0) or rows of a box, in parts that end at the coordinates `across` of the other
- * axis, of which the last is where the box ends. */
-Vector<Lines> Grower::parts(const Rect &box, int axis, const Vector<int> &across) const
-{
-    const size_t count = size_t(box.side(axis));
-    Vector<Line> sums(across.size() * count);
-    auto add = [this](size_t texel, int at, Line &sum) {
-        if (!relief_.touched[texel])
-            return;
-        sum.touch(at);
-        const double height = double(relief_.height[texel]);
-        if (!std::isnan(height))
-            sum.add(at, height);
-    };
-    int from = box.low[!axis];
-    Line *lines = sums.data();   /* of the part */
-    for (const int to : across) {
-        for (int j = box.low[1]; axis && j < box.high[1]; ++j) {
-            Line sum;            /* a row's, in registers */
-            for (int i = from; i < to; ++i)
-                add(relief_.at(i, j), i, sum);
-            lines[j - box.low[1]] = sum;
-        }
-        for (int j = from; !axis && j < to; ++j)
-            for (int i = box.low[0]; i < box.high[0]; ++i)
-                add(relief_.at(i, j), j, lines[i - box.low[0]]);
-        from = to;
-        lines += count;
-    }
-    Vector<Lines> out;
-    out.reserve(across.size());
-    for (size_t part = 0; part < across.size(); ++part) {
-        out.push_back({box.low[axis], {}});
-        out[part].slices.reserve(count);
-        for (size_t i = 0; i < count; ++i)
-            out[part].slices.push_back(sums[part * count + i].slice(axis, box.low[axis] + int(i)));
-    }
-    return out;
 }
 
 /* Visits every cut between lines: where, and what lies below and above it. Nowhere else in the
@@ -233,7 +192,7 @@ Cut Grower::look_ahead(const CutNode &node, const Rect &box, const LinesOf &line
             continue;
         std::sort(across.begin(), across.end());
         across.push_back(box.high[axis]);
-        Vector<Lines> low = parts(box, !axis, across), high = low;
+        Vector<Lines> low = line_parts(relief_, box, !axis, across), high = low;
         for (size_t part = 1; part < across.size(); ++part)
             for (size_t i = 0; i < low[part].slices.size(); ++i) {
                 low[part].slices[i] = low[part].slices[i].plus(low[part - 1].slices[i]);
@@ -269,46 +228,58 @@ Grower::Grown Grower::grow_node(CutNode node, LinesOf lines)
         box.low[k] = std::max(node.region.low[k], node.tight.low[k]);
         box.high[k] = std::max(box.low[k], std::min(node.region.high[k], node.tight.high[k]));
     }
-    Vector<Cut> cuts;
+    add_lines(relief_, box, 1, lines[1]);
     Slice all;
-    for (int axis = 0; axis < 2; ++axis) {
-        Lines &along = lines[size_t(axis)];
-        if (along.slices.empty())
-            along = std::move(parts(box, axis, {box.high[!axis]})[0]);
-        sweep(along, axis, node.region, node.cuts,
+    for (size_t i = lines[1].slices.size(); i-- > 0;)
+        all = all.plus(lines[1].slices[i]);
+    double count;
+    node.tight = all.box;
+    node.cost = area(all, node.region, node.cuts, count) * relief(all);
+    out.node = node;
+    const bool fits = count <= 1, looks = node.cost < ahead_;
+    if (fits && node.cost < smallest_)
+        return out;
+
+    Vector<Cut> cuts;
+    Cut best;
+    add_lines(relief_, box, 0, lines[0]);
+    for (int axis = 0; axis < 2; ++axis)
+        sweep(lines[size_t(axis)], axis, node.region, node.cuts,
               [&](int at, const Slice &below, const Slice &above, const Half &low,
                   const Half &high) {
-                  const Rect &whole = above_[0].box;
-                  double off_middle = std::fabs(whole.low[axis] + whole.high[axis] - 2. * at);
-                  cuts.push_back({value(below, low.region, low.cuts) +
-                                      value(above, high.region, high.cuts) + BALANCE * off_middle,
-                                  axis, at});
+                  double patches[2];
+                  const double texels[2] = {area(below, low.region, low.cuts, patches[0]),
+                                            area(above, high.region, high.cuts, patches[1])};
+                  const double price[2] = {patches[0] * price_, patches[1] * price_};
+                  const double balance = BALANCE * std::fabs(all.box.low[axis] +
+                                                             all.box.high[axis] - 2. * at);
+                  if (!looks && texels[0] + price[0] + (texels[1] + price[1]) + balance >
+                                    best.value) /* before what relief adds */
+                      return;
+                  const Cut cut = {texels[0] * relief(below) + price[0] +
+                                       (texels[1] * relief(above) + price[1]) + balance,
+                                   axis, at};
+                  if (looks)
+                      cuts.push_back(cut);
+                  best = std::min(best, cut);
               });
-        all = above_[0];
+    if (best.axis < 0)
+        return out;
+    if (looks)
+        best = look_ahead(node, box, lines, std::move(cuts), out.lines);
+    const Lines &along = lines[size_t(best.axis)];
+    const auto middle = along.slices.begin() + (best.at - along.first);
+    out.lines[0][size_t(best.axis)] = {along.first, {along.slices.begin(), middle}};
+    out.lines[1][size_t(best.axis)] = {best.at, {middle, along.slices.end()}};
+    for (int side = 0; side < 2; ++side) {
+        Half half = half_of(node.region, node.cuts, best.axis, best.at, side);
+        out.child[side].region = half.region;
+        out.child[side].tight = node.tight;
+        out.child[side].cuts = half.cuts;
     }
-    double patches;
-    node.tight = all.box;
-    node.cost = area(all, node.region, node.cuts, patches) * relief(all);
-    const bool fits = patches <= 1;
-    if (!cuts.empty() && !(fits && node.cost < smallest_)) {
-        const Cut cut = node.cost < ahead_
-                            ? look_ahead(node, box, lines, std::move(cuts), out.lines)
-                            : *std::min_element(cuts.begin(), cuts.end());
-        const Lines &along = lines[size_t(cut.axis)];
-        const auto middle = along.slices.begin() + (cut.at - along.first);
-        out.lines[0][size_t(cut.axis)] = {along.first, {along.slices.begin(), middle}};
-        out.lines[1][size_t(cut.axis)] = {cut.at, {middle, along.slices.end()}};
-        for (int side = 0; side < 2; ++side) {
-            Half half = half_of(node.region, node.cuts, cut.axis, cut.at, side);
-            out.child[side].region = half.region;
-            out.child[side].tight = node.tight;
-            out.child[side].cuts = half.cuts;
-        }
-        out.has_children = true;
-        if (!fits)
-            node.cost = INFINITY;
-    }
-    out.node = node;
+    out.has_children = true;
+    if (!fits)
+        out.node.cost = INFINITY;
     return out;
 }
 

@@ -45,43 +45,17 @@ struct Slice {
     }
 };
 
-/* Sums along one column or row, where the other coordinate stays. */
-struct Line {
-    int low = INT32_MAX, high = INT32_MIN; /* of what is touched */
-    double n = 0, x = 0, h = 0, xx = 0, xh = 0, hh = 0;
-
-    void touch(int at)
-    {
-        low = std::min(low, at);
-        high = at + 1;
-    }
-    void add(double at, double height)
-    {
-        n += 1, x += at, h += height;
-        xx += at * at, xh += at * height, hh += height * height;
-    }
-    Slice slice(int axis, int at) const
-    {
-        Slice out;
-        if (high > low) {
-            out.box.low[axis] = at;
-            out.box.high[axis] = at + 1;
-            out.box.low[!axis] = low;
-            out.box.high[!axis] = high;
-        }
-        double a = at;
-        if (axis == 0)
-            out.moments = {n, n * a, x, h, n * a * a, a * x, xx, a * h, xh, hh};
-        else
-            out.moments = {n, x, n * a, h, xx, a * x, n * a * a, xh, a * h, hh};
-        return out;
-    }
-};
-
 /* Columns or rows of a part of the chart, in order. */
 struct Lines {
     int first = 0; /* coordinate of the first */
     Vector<Slice> slices;
 };
+
+/* The columns (axis 0) or rows of a box, in parts that end at the coordinates `across` of the other
+ * axis, of which the last is where the box ends. */
+Vector<Lines> line_parts(const Relief &relief, const Rect &box, int axis,
+                         const Vector<int> &across);
+/* Those of all of it, where they are not known yet. */
+void add_lines(const Relief &relief, const Rect &box, int axis, Lines &lines);
 
 } // namespace gtx
