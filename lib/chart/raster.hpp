@@ -80,13 +80,17 @@ void raster_centres(const Vec3d corner[3], int width, int height, Visit visit)
     if (area == 0)
         return;
     const double u[2] = {b.x - a.x, b.y - a.y}, v[2] = {c.x - a.x, c.y - a.y};
+    const double side = area > 0 ? 1 : -1;
     for (int j = j0; j <= j1; ++j) {
-        const Row row = narrow_row(i0 + 0.5 - a.x, i1 - i0 + 1, j + 0.5 - a.y, u, v, area, 0);
+        const double y = j + 0.5 - a.y;
+        const Row row = narrow_row(i0 + 0.5 - a.x, i1 - i0 + 1, y, u, v, area, 0);
         for (int i = i0 + row.from; i < i0 + row.to; ++i) {
-            double x = i + 0.5, y = j + 0.5;
-            double wb = ((x - a.x) * (c.y - a.y) - (y - a.y) * (c.x - a.x)) / area;
-            double wc = ((b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x)) / area;
-            if (wb < 0 || wc < 0 || wb + wc > 1)
+            const double x = i + 0.5 - a.x;
+            const double of_b = x * v[1] - y * v[0], of_c = u[0] * y - u[1] * x;
+            if (side * of_b < 0 || side * of_c < 0)
+                continue;
+            const double wb = of_b / area, wc = of_c / area;
+            if (wb + wc > 1)
                 continue;
             visit(i, j, a.z + wb * (b.z - a.z) + wc * (c.z - a.z));
         }

@@ -91,17 +91,13 @@ private:
     };
     /* A tie, and where the texels around its ends are: the first of two rows of two. */
     struct Equation {
-        const Tie *tie;
+        double gap, slack;
+        double give;                  /* how far the gap opens as all move as they like to */
+        double lever[8];              /* and as a texel rises */
         Texel *first[2];
         uint32_t width[2];
-        double give;                  /* how far the gap opens as all move as they like to */
 
         Texel &texel(size_t n) const { return first[n / 4][(n & 1) + (n >> 1 & 1) * width[n / 4]]; }
-        /* How far the gap opens as a texel rises. */
-        double lever(size_t n) const
-        {
-            return tie->end[n / 4].lever * tie->end[n / 4].place.weight(n % 4);
-        }
     };
     Texel &texel(const Tie &tie, size_t n)
     {
@@ -120,11 +116,12 @@ private:
 
 Moves::Equation Moves::equation_of(const Tie &tie, const Mobilities &mobility)
 {
-    Equation out = {&tie, {&texel(tie, 0), &texel(tie, 4)}, {}, 0};
+    Equation out = {tie.gap, tie.slack, 0, {}, {&texel(tie, 0), &texel(tie, 4)}, {}};
     for (size_t k = 0; k < 2; ++k)
         out.width[k] = uint32_t(tie.end[k].field->w);
     for (size_t n = 0; n < 8; ++n) {
-        const double lever = out.lever(n);
+        const End &end = tie.end[n / 4];
+        const double lever = out.lever[n] = end.lever * end.place.weight(n % 4);
         out.give += lever * (mobility[out.texel(n).ground].readiness * lever);
     }
     return out;
@@ -162,19 +159,16 @@ void Moves::solve(const Vector<Vector<const Tie *>> &open,
  */
 void Moves::project(const Equation &e, const Mobilities &mobility) const
 {
-    const double slack = e.tie->slack;
-    double lever[8], gap = e.tie->gap;
-    for (size_t n = 0; n < 8; ++n) {
-        lever[n] = e.lever(n);
-        gap += lever[n] * double(e.texel(n).moved - e.texel(n).applied);
-    }
-    if (std::abs(gap) <= slack)
+    double gap = e.gap;
+    for (size_t n = 0; n < 8; ++n)
+        gap += e.lever[n] * double(e.texel(n).moved - e.texel(n).applied);
+    if (std::abs(gap) <= e.slack)
         return;
-    const double share = (gap - std::copysign(slack, gap)) / e.give;
+    const double share = (gap - std::copysign(e.slack, gap)) / e.give;
     for (size_t n = 0; n < 8; ++n) {
         Texel &texel = e.texel(n);
         const Mobility &own = mobility[texel.ground];
-        texel.moved = float(std::clamp(texel.moved - share * (own.readiness * lever[n]),
+        texel.moved = float(std::clamp(texel.moved - share * (own.readiness * e.lever[n]),
                                        -own.down * texel_,
                                        std::min(double(texel.room), own.up * texel_)));
     }

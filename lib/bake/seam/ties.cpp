@@ -17,6 +17,11 @@ static bool find_crossing(const HeightField &field, int i, int j, double from[2]
 {
     static const int RING[5][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 0}};
     double trim[5];
+    const bool inside = field.trim(field.at(i, j)) <= GTX_TRIM_OUTLINE;
+    if (inside == (field.trim(field.at(i + 1, j)) <= GTX_TRIM_OUTLINE) &&
+        inside == (field.trim(field.at(i + 1, j + 1)) <= GTX_TRIM_OUTLINE) &&
+        inside == (field.trim(field.at(i, j + 1)) <= GTX_TRIM_OUTLINE))
+        return false;
     for (int k = 0; k < 5; ++k) {
         const size_t texel = field.at(i + RING[k][0], j + RING[k][1]);
         if (!field.code(texel) || field.at_border(texel))
@@ -56,26 +61,32 @@ static Vec3d end_of(const Tie &tie)
     return tie.end[0].field->point(tie.end[0].place);
 }
 
+/* A tie that looks for its end: where it begins, and how near the nearest height field is. */
+struct Loose {
+    Tie *tie;
+    Vec3d point;
+    double nearest;
+};
+
 /* Ties what is near enough to the nearest height field, and the others to none. They are of one
  * cell, and look at each height field together: in its maps they look at the same place. */
 static void find_ends(const Vector<const HeightField *> &others, const TieLimits &limits,
-                      const Vector<Tie *> &ties)
+                      Vector<Loose> &loose)
 {
-    Vector<Vec3d> point;
-    Vector<double> nearest(ties.size(), limits.apart);
-    for (Tie *tie : ties) {
-        *tie = {{tie->end[0], {}}};
-        point.push_back(end_of(*tie));
+    for (Loose &one : loose) {
+        *one.tie = {{one.tie->end[0], {}}};
+        one.point = end_of(*one.tie);
+        one.nearest = limits.apart;
     }
-    cancel_point(LOOK_TURNS * others.size() * ties.size());
+    cancel_point(LOOK_TURNS * others.size() * loose.size());
     for (const HeightField *other : others)
-        for (size_t i = 0; i < ties.size(); ++i) {
-            Tie trial = {{ties[i]->end[0], {other}}};
-            if (!measure(point[i], trial) || std::abs(trial.gap) >= nearest[i])
+        for (Loose &one : loose) {
+            Tie trial = {{one.tie->end[0], {other}}};
+            if (!measure(one.point, trial) || std::abs(trial.gap) >= one.nearest)
                 continue;
-            nearest[i] = std::abs(trial.gap);
+            one.nearest = std::abs(trial.gap);
             trial.slack = limits.slack * std::max(trial.end[0].field->step, other->step);
-            *ties[i] = trial;
+            *one.tie = trial;
         }
 }
 
@@ -102,9 +113,9 @@ Vector<Tie> sample_outline(const HeightField &own)
     return ties;
 }
 
-/* Those whose maps reach to the part of an outline between two ties. */
-static Vector<const HeightField *> reaching(const Vector<const HeightField *> &others,
-                                            double apart, const Tie &first, const Tie &last)
+/* Finds those whose maps reach to the part of an outline between two ties. */
+static void find_reaching(const Vector<const HeightField *> &others, double apart,
+                          const Tie &first, const Tie &last, Vector<const HeightField *> &out)
 {
     cancel_point(4 * others.size());
     const HeightField &own = *first.end[0].field;
@@ -112,12 +123,11 @@ static Vector<const HeightField *> reaching(const Vector<const HeightField *> &o
     Box box;
     box.add(from);
     box.add(to);
-    Vector<const HeightField *> out;
+    out.clear();
     std::copy_if(others.begin(), others.end(), std::back_inserter(out),
                  [&](const HeightField *other) {
                      return other->box.is_near(box, apart) && other->reaches(from, to);
                  });
-    return out;
 }
 
 /* What it takes to tell of so many whether they reach somewhere: a look at a map takes longer. */
@@ -132,13 +142,14 @@ double looks_of(const Vector<const HeightField *> &others, const TieLimits &limi
     constexpr size_t EVERY = 8; /* cell: time against accuracy */
     double looks = 0;
     size_t cells = 0;
+    Vector<const HeightField *> near;
     for (auto from = ties.begin(), to = from; from != ties.end(); from = to) {
         while (to != ties.end() && to->end[0].place.cell == from->end[0].place.cell)
             ++to;
         if (cells++ % EVERY)
             continue;
-        const size_t near = reaching(others, limits.apart, *from, *(to - 1)).size();
-        looks += EVERY * (reach_looks(others.size()) + double(near * size_t(to - from)));
+        find_reaching(others, limits.apart, *from, *(to - 1), near);
+        looks += EVERY * (reach_looks(others.size()) + double(near.size() * size_t(to - from)));
     }
     return looks;
 }
@@ -147,23 +158,25 @@ Vector<const Tie *> update_ties(const Vector<const HeightField *> &others,
                                 const TieLimits &limits, Budget budget, Vector<Tie> &ties)
 {
     Vector<const Tie *> open;
-    Vector<Tie *> loose;
+    Vector<Loose> loose;
+    Vector<const HeightField *> near;
     for (auto from = ties.begin(), to = from; from != ties.end(); from = to) {
         loose.clear();
         for (; to != ties.end() && to->end[0].place.cell == from->end[0].place.cell; ++to)
             if (to->moves && (!to->end[1].field || !measure(end_of(*to), *to) || to->is_open()))
-                loose.push_back(&*to);
+                loose.push_back({&*to, {}, 0});
         if (loose.empty())
             continue;
-        Vector<const HeightField *> near;
+        near.clear();
         const bool may_reach = !budget.spent() && budget.grants(reach_looks(others.size()));
         if (may_reach)
-            near = reaching(others, limits.apart, *from, *(to - 1));
+            find_reaching(others, limits.apart, *from, *(to - 1), near);
         if (!may_reach || !budget.grants(double(near.size() * loose.size())))
             near.clear(); /* they are tied to nothing */
         find_ends(near, limits, loose);
-        std::copy_if(loose.begin(), loose.end(), std::back_inserter(open),
-                     [](const Tie *tie) { return tie->is_open(); });
+        for (const Loose &one : loose)
+            if (one.tie->is_open())
+                open.push_back(one.tie);
     }
     return open;
 }

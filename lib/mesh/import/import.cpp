@@ -58,22 +58,37 @@ std::string printable(std::string_view text, size_t longest)
     return text.size() > longest ? out + "..." : out;
 }
 
-/* A whole number of few digits, as indices are: it needs no rounding. */
-static bool parse_whole(const char *&at, const char *end, double &value)
+/* A number of few digits and no exponent, as nearly all are: both its digits and the power of ten
+ * that divides them are doubles, so that it is rounded once (Clinger 1990). */
+static bool parse_short(const char *&at, const char *end, double &value)
 {
     constexpr int MAX_DIGITS = 15;
-    const char *p = at;
-    for (value = 0; p < end && *p >= '0' && *p <= '9'; ++p)
-        value = 10 * value + (*p - '0');
-    const bool whole = p > at && p - at <= MAX_DIGITS &&
-                       (p == end || (*p != '.' && *p != 'e' && *p != 'E'));
-    at = whole ? p : at;
-    return whole;
+    static const double POWERS[MAX_DIGITS + 1] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
+                                                  1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
+    const char *p = at + (at < end && *at == '-'), *const first = p;
+    uint64_t digits = 0;
+    auto read_digits = [&] {
+        const char *from = p;
+        for (; p < end && *p >= '0' && *p <= '9'; ++p)
+            digits = 10 * digits + uint64_t(*p - '0');
+        return p - from;
+    };
+    const ptrdiff_t whole = read_digits();
+    const bool has_point = whole && p < end && *p == '.';
+    p += has_point;
+    const ptrdiff_t part = has_point ? read_digits() : 0;
+    if (!whole || (has_point && !part) || whole + part > MAX_DIGITS ||
+        (p < end && (*p == 'e' || *p == 'E')))
+        return false;
+    value = double(digits) / POWERS[part];
+    value = first > at ? -value : value;
+    at = p;
+    return true;
 }
 
 bool parse_number(const char *&at, const char *end, double &value)
 {
-    if (parse_whole(at, end, value))
+    if (parse_short(at, end, value))
         return true;
     const char *start = at + (at < end && *at == '+');
     auto [stop, error] = number_from(start, end, value);
