@@ -39,6 +39,9 @@ Vector<Vec3f> outermost(const Vector<Vec3f> &normals, const Vec3d &mean)
     return out;
 }
 
+/* Numbers that are computed with at once; each rounds as it would alone. */
+using Lanes = float __attribute__((vector_size(4 * sizeof(float))));
+
 /* The centre of the smallest ball around unit vectors points along the axis of their smallest
  * cone while that is narrower than a half-space (Badoiu, Clarkson 2003: step to the farthest). */
 Vec3d ball_axis(const Vector<Vec3f> &normals)
@@ -48,17 +51,23 @@ Vec3d ball_axis(const Vector<Vec3f> &normals)
         centre += n / float(normals.size());
     const Vector<Vec3f> outer = outermost(normals, Vec3d(centre));
     const size_t count = outer.size();
-    Vector<float> x, y, z, cosine(count); /* apart, so that the loop becomes vectors */
-    for (const Vec3f &n : outer) {
-        x.push_back(n.x);
-        y.push_back(n.y);
-        z.push_back(n.z);
+    Vector<Lanes> x((count + 3) / 4), y(x.size()), z(x.size()), cosines(x.size());
+    for (size_t i = 0; i < 4 * x.size(); ++i) {
+        const Vec3f &n = outer[std::min(i, count - 1)];
+        x[i / 4][i % 4] = n.x;
+        y[i / 4][i % 4] = n.y;
+        z[i / 4][i % 4] = n.z;
     }
     for (int step = 1; step <= CONE_STEPS; ++step) {
-        for (size_t i = 0; i < count; ++i)
-            cosine[i] = x[i] * centre.x + y[i] * centre.y + z[i] * centre.z;
-        const size_t farthest =
-            size_t(std::min_element(cosine.begin(), cosine.end()) - cosine.begin());
+        Lanes least = {2, 2, 2, 2};
+        for (size_t i = 0; i < x.size(); ++i) {
+            cosines[i] = x[i] * centre.x + y[i] * centre.y + z[i] * centre.z;
+            least = cosines[i] < least ? cosines[i] : least;
+        }
+        const float of_all = std::min({least[0], least[1], least[2], least[3]});
+        size_t farthest = 0;
+        while (farthest + 1 < count && cosines[farthest / 4][farthest % 4] != of_all)
+            ++farthest;
         centre += (outer[farthest] - centre) / float(step + 1);
     }
     return normalize(Vec3d(centre));

@@ -5,7 +5,7 @@ namespace gtx::baking {
 
 /* Sides of cells in texels: time against how much of the source is found near. */
 constexpr double SIDE = 2;
-constexpr size_t HASH_BITS = 18;
+constexpr size_t HASH_BITS = 21;
 /* What is told of squared distances above the largest one that counts. */
 constexpr double BEYOND = 1.5;
 

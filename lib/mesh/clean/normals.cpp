@@ -47,7 +47,8 @@ static Vec3f mean_normal(const Vector<FanCorner> &fan, size_t i)
     size_t n = fan.size();
     Vec3d sum(fan[i].face * fan[i].angle);
     for (size_t step = 1; step < std::min(n, 2 * reach); ++step) {
-        size_t j = (i + (step % 2 ? (step + 1) / 2 : n - step / 2)) % n;
+        size_t j = i + (step % 2 ? (step + 1) / 2 : n - step / 2);
+        j -= j >= n ? n : 0;
         if (dot(fan[i].face, fan[j].face) > 0.5f)
             sum += Vec3d(fan[j].face * fan[j].angle);
     }
