@@ -205,7 +205,7 @@ void LayerGrid::add(const LayerGrid &other)
 LayerGrid make_layer_grid(const Surface &surface, const Region &region, const Frame &frame,
                           double pitch, Task &task)
 {
-    constexpr size_t LARGE = 1 << 16; /* changes no byte */
+    constexpr size_t LARGE = 1 << 14; /* changes no byte */
     const size_t parts = std::min<size_t>(task.threads(), task.parts(region.size(), LARGE));
     const FlatRegion flat(surface, region, frame, pitch);
     Vector<Vec3d> kept(3 * std::min(region.size(), MAX_KEPT));

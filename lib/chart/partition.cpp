@@ -225,8 +225,9 @@ static Partition partition_by(PartitionMethod method, const Mesh &mesh,
         directions = peel_directions(surface);
     out.initial_chart =
         method == PartitionMethod::VSA ? cluster(surface, surface.whole, count, task)
-        : method == PartitionMethod::LAYERS ? peel(surface, directions, pitch, count)
-                                            : agglomerate(surface, count, task);
+        : method == PartitionMethod::LAYERS
+            ? peel(surface, directions, pitch, count, task)
+            : agglomerate(surface, count, task);
     make_charts(std::move(surface), options, count, std::move(directions), task, out);
     return out;
 }

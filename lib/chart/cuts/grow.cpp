@@ -286,7 +286,7 @@ Grower::Grown Grower::grow_node(CutNode node, LinesOf lines)
 /* Level by level, the nodes of one at once where the relief is large. */
 Vector<CutNode> Grower::grow(Task &task)
 {
-    const bool at_once = task.parts(relief_.height.size(), 1 << 16) > 1; /* changes no byte */
+    const bool at_once = task.parts(relief_.height.size(), 1 << 14) > 1; /* changes no byte */
     CutNode root;
     root.region = root.tight = {{0, 0}, {relief_.size[0], relief_.size[1]}};
     Vector<CutNode> nodes = {root};

@@ -12,48 +12,80 @@ namespace {
  * -1 % (truck); double: the same. */
 constexpr double MAX_TURNED = 4;
 
-/* Divides the nodes for which that pays when each patch costs `price` texels on top. */
-void prune(CutTree &tree, double price)
-{
-    for (size_t n = tree.nodes.size(); n-- > 0;) {
-        CutNode &node = tree.nodes[n];
-        node.leaves = 1;
-        node.least = node.cost + price;
-        node.divided = false;
-        if (node.child[0] < 0)
-            continue;
-        const CutNode &a = tree.nodes[size_t(node.child[0])];
-        const CutNode &b = tree.nodes[size_t(node.child[1])];
-        if (a.least + b.least < node.least) {
-            node.least = a.least + b.least;
-            node.leaves = a.leaves + b.leaves;
-            node.divided = true;
+/* The trees of some charts as they are pruned at one price after the other: little of each node. */
+class Pruning {
+public:
+    explicit Pruning(const Vector<CutTree> &trees, size_t turns) : turns_(turns)
+    {
+        for (const CutTree &tree : trees) {
+            first_.push_back(nodes_.size());
+            for (const CutNode &node : tree.nodes)
+                nodes_.push_back({node.cost, 0, {node.child[0], node.child[1]}, 1, false});
         }
+        first_.push_back(nodes_.size());
     }
-}
+    /* Of each run of `turns` trees the one that costs least at a price; how many leaves they
+     * have. */
+    size_t prune_all(double price, Vector<size_t> &best)
+    {
+        constexpr size_t NODE_TURNS = 4; /* of a short loop, that take as long as a node */
+        size_t leaves = 0;
+        best.clear();
+        for (size_t run = 0; run + 1 < first_.size(); run += turns_) {
+            size_t least = run;
+            for (size_t t = run; t < run + turns_; ++t) {
+                cancel_point(NODE_TURNS * (first_[t + 1] - first_[t]));
+                if (first_[t] == first_[t + 1])
+                    continue;
+                prune(t, price);
+                if (nodes_[first_[t]].least < nodes_[first_[least]].least)
+                    least = t;
+            }
+            leaves += nodes_[first_[least]].leaves;
+            best.push_back(least - run);
+        }
+        return leaves;
+    }
+    /* Divides the trees as they were pruned last. */
+    void divide(Vector<CutTree> &trees) const
+    {
+        const Node *from = nodes_.data();
+        for (CutTree &tree : trees)
+            for (CutNode &node : tree.nodes)
+                node.divided = from++->divided;
+    }
 
-/* Of each run of `turns` trees the one that costs least at a price; how many leaves they have. */
-size_t prune_all(Vector<CutTree> &trees, size_t turns, double price,
-                 Vector<size_t> &best)
-{
-    constexpr size_t NODE_TURNS = 4; /* of a short loop, that take as long as a node */
-    size_t leaves = 0;
-    best.clear();
-    for (size_t first = 0; first < trees.size(); first += turns) {
-        size_t least = first;
-        for (size_t t = first; t < first + turns; ++t) {
-            cancel_point(NODE_TURNS * trees[t].nodes.size());
-            if (trees[t].nodes.empty())
+private:
+    struct Node {
+        double cost, least;      /* as one patch; with its descendants, at the price of patches */
+        int child[2];
+        uint32_t leaves;
+        bool divided;
+    };
+    /* Divides the nodes for which that pays when each patch costs `price` texels on top. */
+    void prune(size_t tree, double price)
+    {
+        Node *const nodes = &nodes_[first_[tree]];
+        for (size_t n = first_[tree + 1] - first_[tree]; n-- > 0;) {
+            Node &node = nodes[n];
+            node.leaves = 1;
+            node.least = node.cost + price;
+            node.divided = false;
+            if (node.child[0] < 0)
                 continue;
-            prune(trees[t], price);
-            if (trees[t].nodes[0].least < trees[least].nodes[0].least)
-                least = t;
+            const Node &a = nodes[node.child[0]], &b = nodes[node.child[1]];
+            if (a.least + b.least < node.least) {
+                node.least = a.least + b.least;
+                node.leaves = a.leaves + b.leaves;
+                node.divided = true;
+            }
         }
-        leaves += trees[least].nodes[0].leaves;
-        best.push_back(least - first);
     }
-    return leaves;
-}
+
+    const size_t turns_;
+    Vector<size_t> first_;       /* of each tree, and the end */
+    Vector<Node> nodes_;
+};
 
 } // namespace
 
@@ -96,7 +128,7 @@ Relief make_relief(const Surface &surface, const Region &region, const Frame &fr
                    Task &task)
 {
     constexpr size_t TURNS = 64; /* of a short loop, that take as long as a triangle */
-    constexpr size_t LARGE = 1 << 16; /* changes no byte */
+    constexpr size_t LARGE = 1 << 14; /* changes no byte */
     Vector<Relief> parts(task.parts(region.size(), LARGE));
     const FrameInverse inverse(frame);
     task.in_parts(region.size(), parts.size(), [&](size_t part, size_t from, size_t to) {
@@ -179,19 +211,21 @@ Vector<size_t> choose_turns(Vector<CutTree> &trees, size_t turns, size_t wanted)
     constexpr double HIGHEST = 1e12; /* texels: with more charts than wanted no price is enough */
     constexpr int STEPS = 40;        /* of a bisection that ends early where it can */
     Vector<size_t> best;
+    Pruning pruning(trees, turns);
     double low = 0, high = 1;
-    if (prune_all(trees, turns, low, best) <= wanted)
-        return best;
-    while (high < HIGHEST && prune_all(trees, turns, high, best) > wanted)
-        high *= 2;
-    for (int step = 0; step < STEPS; ++step) {
-        const double middle = (low + high) / 2;
-        const size_t leaves = prune_all(trees, turns, middle, best);
-        if (leaves == wanted)
-            return best;
-        (leaves > wanted ? low : high) = middle;
+    size_t leaves = pruning.prune_all(low, best);
+    if (leaves > wanted) {
+        while (high < HIGHEST && pruning.prune_all(high, best) > wanted)
+            high *= 2;
+        for (int step = 0; step < STEPS && leaves != wanted; ++step) {
+            const double middle = (low + high) / 2;
+            leaves = pruning.prune_all(middle, best);
+            (leaves > wanted ? low : high) = middle;
+        }
+        if (leaves != wanted)
+            pruning.prune_all(high, best);
     }
-    prune_all(trees, turns, high, best);
+    pruning.divide(trees);
     return best;
 }
 

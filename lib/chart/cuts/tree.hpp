@@ -56,9 +56,6 @@ struct CutNode {
     double cost = 0;                  /* texels as one patch; infinite where it is too long */
     Bends bends;
     int child[2] = {-1, -1};
-    /* With its descendants, at the current price of a patch: */
-    double least = 0;
-    size_t leaves = 1;
     bool divided = false;             /* it is cut into its children */
     double density[2] = {1, 1};       /* texels of its patch, along each axis, for one here */
 };

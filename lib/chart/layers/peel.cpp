@@ -21,6 +21,17 @@ constexpr double MIN_FACING = 0.35;
 /* Triangles of an island go over from its border inwards, so many deep. */
 constexpr int PASSES = 4;
 
+/* Calls body(t) for triangles 0 to count - 1, at once. */
+template <class Body> void for_triangles(size_t count, Task &task, Body body)
+{
+    constexpr size_t LEAST = 1 << 14, TURNS = 16; /* of a short loop, that take as long as one */
+    task.in_parts(count, task.parts(count, LEAST), [&](size_t, size_t from, size_t to) {
+        cancel_point(TURNS * (to - from));
+        for (size_t t = from; t < to; ++t)
+            body(t);
+    });
+}
+
 /* The share of the area that is lost to slant where everything is seen along the nearest axis. */
 double slant(const Surface &surface, const Vector<Vec3d> &directions)
 {
@@ -66,7 +77,7 @@ Vector<Vec3d> principal_directions(const Surface &surface)
 /* Lets triangles of small islands go over to a larger piece beside them that sees them well;
  * whether any does. */
 bool give_up_islands(const Surface &surface, const Vector<Vec3d> &directions, double pitch,
-                     Vector<uint32_t> &label)
+                     Vector<uint32_t> &label, Task &task)
 {
     Vector<uint32_t> piece = label;
     Vector<double> texels(connected_pieces(surface.whole, piece));
@@ -74,12 +85,10 @@ bool give_up_islands(const Surface &surface, const Vector<Vec3d> &directions, do
     for (size_t t = 0; t < label.size(); ++t)
         texels[piece[t]] += double(surface.facets[t].size) * mean / (pitch * pitch);
     const Vector<uint32_t> before = label;
-    bool any = false;
-    for (size_t t = 0; t < label.size(); ++t) {
-        cancel_point();
+    for_triangles(label.size(), task, [&](size_t t) {
         double best = MIN_FACING;
         if (texels[piece[t]] >= SMALL_ISLAND_TEXELS)
-            continue;
+            return;
         for (uint32_t n : surface.whole.neighbours[t]) {
             if (n == NO_TRIANGLE || texels[piece[n]] <= texels[piece[t]])
                 continue;
@@ -89,11 +98,10 @@ bool give_up_islands(const Surface &surface, const Vector<Vec3d> &directions, do
             if (facing > best) {
                 best = facing;
                 label[t] = before[n];
-                any = true;
             }
         }
-    }
-    return any;
+    });
+    return label != before;
 }
 
 } // namespace
@@ -120,11 +128,10 @@ Vector<Vec3d> peel_directions(const Surface &surface)
 }
 
 Vector<uint32_t> peel(Surface &surface, const Vector<Vec3d> &directions, double pitch,
-                      uint32_t &count)
+                      uint32_t &count, Task &task)
 {
     Vector<uint32_t> label(surface.facets.size());
-    for (size_t t = 0; t < label.size(); ++t) {
-        cancel_point();
+    for_triangles(label.size(), task, [&](size_t t) {
         const Vec3d own(surface.normal[t]);
         size_t nearest = nearest_direction(directions, Vec3d(surface.facets[t].normal));
         if (!surface.junk[t] && dot(own, directions[nearest]) < MIN_FACING) {
@@ -132,8 +139,8 @@ Vector<uint32_t> peel(Surface &surface, const Vector<Vec3d> &directions, double 
             surface.facets[t].normal = surface.normal[t];
         }
         label[t] = uint32_t(nearest);
-    }
-    for (int pass = 0; pass < PASSES && give_up_islands(surface, directions, pitch, label);)
+    });
+    for (int pass = 0; pass < PASSES && give_up_islands(surface, directions, pitch, label, task);)
         ++pass;
     count = connected_pieces(surface.whole, label);
     return label;

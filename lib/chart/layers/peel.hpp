@@ -21,7 +21,7 @@ size_t nearest_direction(const Vector<Vec3d> &directions, const Vec3d &vector);
  * number in `count`. Normals that smoothing has turned away from their triangles' are these' own
  * again. `pitch` is the expected size of a texel. */
 Vector<uint32_t> peel(Surface &surface, const Vector<Vec3d> &directions, double pitch,
-                      uint32_t &count);
+                      uint32_t &count, Task &task);
 
 /* Puts small charts of one direction that lie beside each other, none above another, into one
  * chart where that takes fewer texels: the leaves of a tree, the links of a chain. `grain` and
