@@ -87,7 +87,9 @@ private:
     {
         auto [s, e] = edge;
         if (std::max({corner[0].b, corner[1].b, corner[2].b}) < std::min(s.b, e.b) - reach ||
-            std::min({corner[0].b, corner[1].b, corner[2].b}) > std::max(s.b, e.b) + reach)
+            std::min({corner[0].b, corner[1].b, corner[2].b}) > std::max(s.b, e.b) + reach ||
+            std::max({corner[0].a, corner[1].a, corner[2].a}) < std::min(s.a, e.a) - reach ||
+            std::min({corner[0].a, corner[1].a, corner[2].a}) > std::max(s.a, e.a) + reach)
             return false;
         bool left = true, right = true;
         for (int k = 0; k < 3; ++k) {

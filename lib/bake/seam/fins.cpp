@@ -131,8 +131,8 @@ bool Fins::is_long(size_t cell) const
 
 void Fins::collect()
 {
-    for (int j = 0; j + 1 < own_.h; ++j) {
-        cancel_point(CELL_TURNS * size_t(own_.w));
+    cancel_point(CELL_TURNS * trim_.size());
+    for (int j = 0; j + 1 < own_.h; ++j)
         for (int i = 0; i + 1 < own_.w; ++i) {
             const size_t cell = own_.at(i, j);
             if (!is_long(cell))
@@ -145,7 +145,6 @@ void Fins::collect()
                         samples_.push_back(sample);
                 }
         }
-    }
 }
 
 /* Whether any comes to a point, in so many texels outside its outline, or near it. */
@@ -308,8 +307,8 @@ Vector<uint8_t> Fins::take_back(const HeightFields &fields)
         if (sample.lies >= AWAY_FROM_IT)
             hide(sample.place());
     size_t next = 0;
-    for (int j = 0; j + 1 < own_.h; ++j) {
-        cancel_point(CELL_TURNS * size_t(own_.w));
+    cancel_point(CELL_TURNS * trim_.size());
+    for (int j = 0; j + 1 < own_.h; ++j)
         for (int i = 0; i + 1 < own_.w; ++i) {
             const size_t cell = own_.at(i, j);
             const std::array<size_t, 4> at = corners(cell);
@@ -320,7 +319,6 @@ Vector<uint8_t> Fins::take_back(const HeightFields &fields)
                 }))
                 next = show_cell(cell, next, fields, budget);
         }
-    }
     return std::move(trim_);
 }
 

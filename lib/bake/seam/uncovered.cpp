@@ -52,8 +52,9 @@ constexpr int LONG = 12;
 /* Samples along a texel. A needle may be as long as its chart: it gets as many as a triangle whose
  * sides are so many texels longer than those of a square of its area. */
 constexpr double SAMPLES = 2, NEEDLE = 8;
-/* Nodes of its own height field around a triangle that are looked at for each of its samples, before
- * these are: a node takes so much less time. */
+/* Nodes of its own height field around a triangle that are looked at for each of its samples,
+ * before these are: a node takes so much less time. The dragon: 88 % of triangles need no samples,
+ * 31 % at a quarter. */
 constexpr int NODES = 4;
 /* Height fields over a place that are counted: a limit on time. */
 constexpr double MAX_OVER = 1024;
