@@ -35,8 +35,7 @@ constexpr double NEARBY = 1;
 constexpr uint8_t PARTS = 4;
 /* A limit on time: looks at the source, and at other height fields, for a sample. */
 constexpr size_t LOOKS = 256;
-/* Of a short loop, that take as long as a cell. */
-constexpr size_t CELL_TURNS = 16;
+constexpr size_t CELL_TURNS = 16; /* of a short loop, that take as long as a cell */
 
 namespace {
 
