@@ -2,8 +2,8 @@
  * height fields drawn as displaced grids (Cook, Shade Trees, SIGGRAPH 1984); with GTX_BLOCKS, too,
  * nodes fetch their heights. Map coordinates and the frame of normals follow from the patch's
  * record. With GTX_LIT, for geotex_lit.frag and geotex_lod_lit.frag, triangles are so small, or so
- * even, that the light at their corners is enough; with GTX_VERTEX_NORMALS, for an engine's own
- * main, the normals and colours there are.
+ * even, that the light at their corners is enough, with GTX_OWN_VERTICES an engine's own; with
+ * GTX_VERTEX_NORMALS, for an engine's own main, the normals and colours there are.
  *
  * Needs geotex_height_field.glsl and geotex_view.glsl before it, and with GTX_LIT and GTX_MATERIALS
  * geotex_surface.glsl and geotex_material.glsl. What hardly changes over a triangle is found here
@@ -63,7 +63,7 @@ invariant gl_Position;                      /* bit for bit what a depth prepass 
 
 #ifdef GTX_LIT
 GTX_VARYING(0) out vec4 gtx_lit;            /* colour as it is shown */
-#ifndef GTX_GRID
+#if !defined(GTX_GRID) && !defined(GTX_OWN_VERTICES)
 GTX_VARYING(1) out vec3 gtx_behind;         /* the same, of the back */
 #endif
 #else
@@ -169,9 +169,13 @@ void main()
     vec3 n = normalize(world_normals * gtx_octahedral(float(gtx_steps.w)));
     vec3 eye = gtx_view_eye(gtx_object_x, gtx_object_y, gtx_object_z);
     vec3 ray = normalize(gtx_to_world(object.xyz * gtx_depth.w - eye));
+#ifdef GTX_OWN_VERTICES
+    gtx_lit = gtx_at_vertex(world, n, -ray, gtx_tint);
+#else
     vec3 root = pow(max(gtx_tint.rgb, 0.0), vec3(1.0 / 2.4));
     gtx_lit = vec4(gtx_shown_to(n, -ray, root), gtx_tint.a);
     gtx_behind = gtx_shown_to(gtx_from_behind(n, ray), -ray, root);
+#endif
 }
 #else
 void main()

@@ -94,7 +94,11 @@ GTX_API void gtx_model_destroy(gtx_renderer *renderer, gtx_model *model);
  * geotex_rays.glsl (see gtx_rays_bind) are included too. `text` must have no #version, may use
  * texture units 8 to 12 for its samplers, and is not kept. A line `#pragma geotex tiles` promises
  * that it gets everything about a fragment from geotex's functions; only then is it cast by tiles,
- * where the renderer does so and the view asks for it (GTX_VIEW_SHADING_BY_TILES). Compilers'
+ * where the renderer does so and the view asks for it (GTX_VIEW_SHADING_BY_TILES). A line `#pragma
+ * geotex vertices` promises that the main discards nothing that is found and that, where
+ * GTX_OWN_VERTICES is defined, the text is `vec4 gtx_at_vertex(vec3 point, vec3 normal, vec3 eye,
+ * vec4 tint)` and what that calls, all in world space, which gives what the main writes: LOD meshes
+ * that have normals are then shaded at their vertices, in the vertex shader. Compilers'
  * messages number its lines from 1, as string 1. The shading is allocated from the renderer's
  * allocator; free it with gtx_shading_destroy.
  * Errors: ARGUMENT, MEMORY, SHADER (the renderer's log says why). */

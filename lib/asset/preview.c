@@ -58,25 +58,24 @@ typedef struct shaping {
     double looks;                 /* at texels that triangles may still take */
 } shaping;
 
-/* The vertices' own, or those of triangles, each as much as its area. */
-static void find_normals(const shaping *s)
+void gtx_mesh_normals(const gtx_lod_mesh *mesh, float *normals)
 {
-    for (size_t v = 0; v < s->mesh.vertex_count && s->mesh.normals; ++v)
-        gtx_decode_octahedral(s->mesh.normals + 2 * v, s->normals + 3 * v);
-    if (s->mesh.normals)
+    for (size_t v = 0; v < mesh->vertex_count && mesh->normals; ++v)
+        gtx_decode_octahedral(mesh->normals + 2 * v, normals + 3 * v);
+    if (mesh->normals)
         return;
-    for (uint32_t t = 0; t < s->mesh.triangle_count; ++t) {
-        const uint32_t *v = s->mesh.indices + 3 * (size_t)t;
+    for (uint32_t t = 0; t < mesh->triangle_count; ++t) {
+        const uint32_t *v = mesh->indices + 3 * (size_t)t;
         float side[2][3];
         for (int k = 0; k < 3; ++k)
             for (int e = 0; e < 2; ++e)
-                side[e][k] = (float)s->mesh.positions[3 * (size_t)v[e + 1] + (size_t)k] -
-                             (float)s->mesh.positions[3 * (size_t)v[0] + (size_t)k];
+                side[e][k] = (float)mesh->positions[3 * (size_t)v[e + 1] + (size_t)k] -
+                             (float)mesh->positions[3 * (size_t)v[0] + (size_t)k];
         for (int k = 0; k < 3; ++k) {
             const int i = (k + 1) % 3, j = (k + 2) % 3;
             const float part = side[0][i] * side[1][j] - side[0][j] * side[1][i];
             for (int c = 0; c < 3; ++c)
-                s->normals[3 * (size_t)v[c] + (size_t)k] += part;
+                normals[3 * (size_t)v[c] + (size_t)k] += part;
         }
     }
 }
@@ -215,7 +214,7 @@ static bool shape(gtx_asset *asset)
     if (whole) {
         memset(asset->normal[0], GTX_FAR_NORMAL, 2 * texels);
         memset(asset->trim, GTX_FAR_TRIM, texels);
-        find_normals(&s);
+        gtx_mesh_normals(&s.mesh, s.normals);
         for (uint32_t i = 0; i < asset->info.patch_count; ++i)
             shape_patch(&s, i);
     }

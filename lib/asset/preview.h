@@ -12,6 +12,10 @@ uint32_t gtx_preview_shift(const gtx_info *info, uint64_t texels);
  * the asset's mip levels from the shift on. */
 gtx_info gtx_preview_info(const gtx_info *info, uint32_t shift, bool mips);
 
+/* Normals of a mesh's vertices, three numbers each, of any length, which are 0: their own, or those
+ * of the triangles, each as much as its area. */
+void gtx_mesh_normals(const gtx_lod_mesh *mesh, float *normals);
+
 /* Bytes that gtx_preview_new allocates besides the preview. */
 uint64_t gtx_preview_scratch(const gtx_info *preview, uint32_t vertices);
 

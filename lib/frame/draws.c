@@ -1,5 +1,6 @@
 /* The draws of a frame: runs of alike instances by an LOD mesh, cast, or patch by patch, each in
  * its own way. */
+#include "frame/frustum.h"
 #include "frame/techniques.h"
 
 #include <string.h>
@@ -134,24 +135,40 @@ static void draw_side(const gtx_draw_call *call, const run *r, uint32_t level,
         call->submit(&draw, call->user);
 }
 
-/* An LOD mesh, or parts of it: patches with a back face culled, then those without. Of these the
- * front faces first, by their own technique: most back faces lie hidden behind them. A GPU takes
- * longer for vertices than that spares. */
+/* Whether no instance of a run shows a back: what a host's main leaves out of a surface may. */
+static bool hides_backs(const gtx_draw_call *call, const run *r, uint32_t level)
+{
+    const gtx_lod_meshes *lods = &r->model->lods;
+    bool hidden = !lods->edited_count && !call->sight.two &&
+                  (!gtx_is_own(call) || call->planner->own_vertices);
+    for (uint32_t i = 0; i < r->count && hidden; ++i) {
+        const gtx_frustum f =
+            gtx_frustum_of(call, r->model, &call->planner->instances[r->first + i]);
+        hidden = !gtx_is_before_near(&f, r->model->sphere) && gtx_lod_hides_backs(lods, level, &f);
+    }
+    return hidden;
+}
+
+/* An LOD mesh, or parts of it: patches with a back face culled, then those without, unless none of
+ * their back faces shows. Of these the front faces first, by their own technique: most back faces
+ * lie hidden behind them. A GPU takes longer for vertices than that spares. */
 static void draw_lod(const gtx_draw_call *call, const run *r, uint32_t level, const uint8_t *parts)
 {
     const gtx_lod_meshes *lods = &r->model->lods;
     const bool own = gtx_is_own(call);
-    bool front = call->view->pass == GTX_PASS_FORWARD && !own && !gtx_is_lit(call, r->model, level);
-    for (uint32_t i = 0; i < r->count; ++i)
+    bool front = own || (call->view->pass == GTX_PASS_FORWARD && !gtx_is_lit(call, r->model, level));
+    for (uint32_t i = 0; i < r->count && !own; ++i)
         front = front && gtx_keeps_angles(&call->planner->instances[r->first + i]);
     if (lods->one_sided)
         draw_side(call, r, level, parts, false, front, GTX_CULL_BACK);
     if (lods->one_sided == lods->patch_count)
         return;
-    const bool twice = (front || own) && !call->planner->on_gpu;
-    if (twice)
-        draw_side(call, r, level, parts, true, true, GTX_CULL_BACK);
-    draw_side(call, r, level, parts, true, false, twice ? GTX_CULL_FRONT : GTX_CULL_NONE);
+    const bool hidden = hides_backs(call, r, level);
+    const bool twice = front && !hidden && !call->planner->on_gpu;
+    if (twice || hidden)
+        draw_side(call, r, level, parts, true, front, GTX_CULL_BACK);
+    if (!hidden)
+        draw_side(call, r, level, parts, true, false, twice ? GTX_CULL_FRONT : GTX_CULL_NONE);
 }
 
 /* Displaced grids. */

@@ -245,12 +245,17 @@ void gtx_lod_fill(const gtx_asset *asset, uint32_t k, const gtx_allocator *alloc
     gtx_lod_level *level = &out->levels[k];
     gtx_lod_mesh source;
     gtx_get_lod_mesh(asset, k, &source);
+    uint8_t *normals = gtx_lod_normals(asset, &source, allocator);
+    source.normals = normals ? normals : source.normals;
     split(out, level, &source);
     free_copies(level, allocator);
     /* The next level's indices are aligned. */
     const size_t end = 3 * (size_t)level->triangle_count * level->index_size;
     memset(out->indices + level->index_offset + end, 0, (4 - end % 4) % 4);
-    gtx_lod_light(asset, k, out);
+    gtx_lod_light(asset, k, &source, out);
+    gtx_free_array(allocator, normals, source.vertex_count, 2);
+    if (k == 0 && out->one_sided < out->patch_count)
+        gtx_lod_find_openings(asset, allocator, out);
 }
 
 void gtx_lod_free_staging(gtx_lod_meshes *lods, const gtx_allocator *allocator)

@@ -45,6 +45,9 @@ typedef struct gtx_lod_level {
     gtx_result result;        /* of measuring it */
 } gtx_lod_level;
 
+/* Meshes with more, as of leaves or dirty scans, are seldom seen from behind all of them. */
+enum { GTX_MAX_OPENINGS = 64 };
+
 /* All levels share one buffer of vertices and one of indices, the finest first. */
 typedef struct gtx_lod_meshes {
     uint32_t level_count, patch_count;
@@ -55,6 +58,11 @@ typedef struct gtx_lod_meshes {
     bool *edited;             /* a patch each: its height field has changed, and it must be cast */
     uint32_t edited_count;
     float low[3], high[3];    /* bounds in object space */
+    /* With its openings closed the finest level bounds a volume: where they open to, unit, and how
+     * far that way they begin. */
+    bool solid;
+    float openings[GTX_MAX_OPENINGS][4];
+    uint32_t opening_count;
     /* Patches that share a vertex of the finest level with patch i:
      * neighbours[first_neighbour[i]]..neighbours[first_neighbour[i + 1] - 1]. */
     uint32_t *first_neighbour, *neighbours;
@@ -74,14 +82,25 @@ void gtx_lod_measure(const gtx_asset *asset, uint32_t level, const gtx_allocator
 gtx_result gtx_lod_place(const gtx_allocator *allocator, gtx_lod_meshes *out, gtx_error *error);
 void gtx_lod_fill(const gtx_asset *asset, uint32_t level, const gtx_allocator *allocator,
                   gtx_lod_meshes *out);
-/* lod_normals.c: whether a level may be lit by normals of its vertices; and of one that is filled
- * these, and whether they are enough. */
+/* lod_normals.c: whether a level may be lit by normals of its vertices; those of a level of a
+ * file's beginning that has none, as in the file, NULL for others and without memory; and of one
+ * that is filled its normals, and whether they are enough. */
 bool gtx_lod_may_be_lit(const gtx_asset *asset, uint32_t level, const gtx_lod_level *of);
-void gtx_lod_light(const gtx_asset *asset, uint32_t level, gtx_lod_meshes *out);
+uint8_t *gtx_lod_normals(const gtx_asset *asset, const gtx_lod_mesh *source,
+                         const gtx_allocator *allocator);
+void gtx_lod_light(const gtx_asset *asset, uint32_t level, const gtx_lod_mesh *source,
+                   gtx_lod_meshes *out);
 /* lod_neighbours.c: of a model's finest level; `meetings` counts its vertices once for each patch
  * that has them. False without memory. */
 bool gtx_lod_find_neighbours(const gtx_lod_mesh *source, uint32_t meetings,
                              const gtx_allocator *allocator, gtx_lod_meshes *out);
+/* openings.c: of a model's finest level; nothing without memory. Afterwards whether nobody sees a
+ * back of a level from an eye in front of all of it. */
+struct gtx_frustum;
+void gtx_lod_find_openings(const gtx_asset *asset, const gtx_allocator *allocator,
+                           gtx_lod_meshes *out);
+bool gtx_lod_hides_backs(const gtx_lod_meshes *lods, uint32_t level,
+                         const struct gtx_frustum *f);
 void gtx_lod_free_staging(gtx_lod_meshes *lods, const gtx_allocator *allocator);
 void gtx_lod_free(gtx_lod_meshes *lods, const gtx_allocator *allocator);
 

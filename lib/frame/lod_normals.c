@@ -3,6 +3,8 @@
 #include "frame/lod.h"
 
 #include "asset/patch.h"
+#include "asset/preview.h"
+#include "base/alloc.h"
 #include "base/vec.h"
 
 #include <math.h>
@@ -177,31 +179,49 @@ static double texel_of(const gtx_asset *asset)
     return sqrt(area / texels);
 }
 
-/* Coarser levels are seen from so far that maps have to be averaged. What a file's beginning has
- * for maps is made of the mesh. */
+/* What a file's beginning has for maps is made of the mesh. Of others coarser levels are seen from
+ * so far that maps have to be averaged. */
 bool gtx_lod_may_be_lit(const gtx_asset *asset, uint32_t k, const gtx_lod_level *level)
 {
     const gtx_info *info = &asset->info;
+    if (info->has_color || info->has_material || info->has_emission)
+        return false;
+    if (asset->bare && !asset->marks)
+        return true;
     gtx_lod_mesh source;
     gtx_get_lod_mesh(asset, k, &source);
-    return k == 0 && !info->has_color && !info->has_material && !info->has_emission &&
-           !level->far &&
+    return k == 0 && !level->far &&
            (asset->bare ? source.normals != NULL
                         : level->triangle_count >= least_share * (double)info->source_triangles);
 }
 
-void gtx_lod_light(const gtx_asset *asset, uint32_t k, gtx_lod_meshes *lods)
+uint8_t *gtx_lod_normals(const gtx_asset *asset, const gtx_lod_mesh *source,
+                         const gtx_allocator *allocator)
+{
+    if (!asset->bare || asset->marks || source->normals)
+        return NULL;
+    const size_t count = source->vertex_count;
+    float *normals = gtx_alloc_array(allocator, count, 3 * sizeof *normals);
+    uint8_t *codes = normals ? gtx_alloc_raw(allocator, count, 2) : NULL;
+    if (codes)
+        gtx_mesh_normals(source, normals);
+    for (size_t v = 0; v < count && codes; ++v)
+        gtx_encode_octahedral(normals + 3 * v, codes + 2 * v);
+    gtx_free_array(allocator, normals, count, 3 * sizeof *normals);
+    return codes;
+}
+
+void gtx_lod_light(const gtx_asset *asset, uint32_t k, const gtx_lod_mesh *source,
+                   gtx_lod_meshes *lods)
 {
     gtx_lod_level *level = &lods->levels[k];
-    gtx_lod_mesh source;
-    gtx_get_lod_mesh(asset, k, &source);
     if (!gtx_lod_may_be_lit(asset, k, level))
         return;
     gtx_lod_vertex *first = vertices_of(lods, level);
     gtx_lod_vertex *end = first + level->vertex_bytes / sizeof *first;
     uint32_t patch = lods->patch_count;
     look_place at = {.patch = NULL};
-    for (gtx_lod_vertex *v = first; v < end && !source.normals; ++v) {
+    for (gtx_lod_vertex *v = first; v < end && !source->normals; ++v) {
         double point[3];
         if (v->patch != patch)
             at = place_of(asset, v->patch);
@@ -209,9 +229,10 @@ void gtx_lod_light(const gtx_asset *asset, uint32_t k, gtx_lod_meshes *lods)
         point_of(level, v, point);
         v->normal = encode(look_up(asset, &at, point));
     }
-    const double stray = source.normals ? degrees * (double)source.normal_error
-                                        : stray_of(asset, lods, level);
-    level->lit = asset->bare || stray <= most_degrees;
+    const double stray = asset->bare ? 0
+                         : source->normals ? degrees * (double)source->normal_error
+                                          : stray_of(asset, lods, level);
+    level->lit = stray <= most_degrees;
     if (level->lit && !asset->bare && (double)level->error <= exact_texels * texel_of(asset))
         level->error = 0;
 }

@@ -37,7 +37,8 @@ static uint64_t patch_bytes(void)
 /* A vertex may be there once for each triangle that has it. */
 static uint64_t lod_bytes(const gtx_asset *asset)
 {
-    enum { COPIES = 16 };     /* bytes of a vertex while a level is made */
+    enum { COPIES = 32 };     /* bytes of a vertex while a level is made */
+    enum { OPENINGS = 24, EDGES = 12 }; /* of a vertex and a triangle, to find openings */
     enum { PATCH = 5 };       /* of gtx_lod_meshes: order and edited */
     const uint64_t triangle = 3 * (sizeof(gtx_lod_vertex) + sizeof(uint32_t));
     const uint64_t patch = sizeof(uint32_t) + sizeof(gtx_lod_run);
@@ -47,6 +48,8 @@ static uint64_t lod_bytes(const gtx_asset *asset)
         gtx_get_lod_mesh(asset, k, &level);
         bytes += triangle * level.triangle_count + COPIES * (uint64_t)level.vertex_count +
                  patch * (asset->info.patch_count + 1u);
+        if (k == 0)
+            bytes += OPENINGS * (uint64_t)level.vertex_count + EDGES * level.triangle_count;
     }
     return bytes;
 }

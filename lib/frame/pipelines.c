@@ -103,6 +103,9 @@ static const technique_files techniques[TECHNIQUE_COUNT] = {
                              {"geotex_cast.glsl", "geotex_fragment.glsl", "geotex_tiles.glsl",
                               "geotex_rays.glsl"},
                              NULL, ALL_MAPS},
+    [TECHNIQUE_OWN_LOD_LIT] = {"lit LOD mesh, own", "geotex_lod.vert",
+                               LIT "#define GTX_OWN_VERTICES\n", {NULL},
+                               "geotex_lod_lit.frag", ALL_MAPS},
 };
 
 static const struct {
@@ -182,7 +185,7 @@ bool gtx_technique_is_blocks(gtx_technique technique)
 
 bool gtx_technique_is_forward(gtx_technique technique)
 {
-    return techniques[technique].forward;
+    return techniques[technique].forward && !is_own(technique);
 }
 
 /* Whether there is a pipeline of that number. */
@@ -203,7 +206,7 @@ static bool is_lod(gtx_technique technique)
     return technique == TECHNIQUE_LOD || technique == TECHNIQUE_LOD_FRONT ||
            technique == TECHNIQUE_LOD_SINGLE ||
            technique == TECHNIQUE_LOD_LIT || technique == TECHNIQUE_OWN_LOD ||
-           technique == TECHNIQUE_OWN_LOD_NORMALS;
+           technique == TECHNIQUE_OWN_LOD_NORMALS || technique == TECHNIQUE_OWN_LOD_LIT;
 }
 
 static bool is_cast(gtx_technique technique)
@@ -221,7 +224,8 @@ uint32_t gtx_pipeline_get(uint32_t pipeline, gtx_pipeline *out)
 {
     const recipe r = recipe_of(pipeline);
     const bool made = is_made(pipeline) &&
-                      r.technique != TECHNIQUE_LOD_SINGLE; /* OpenGL's alone */
+                      r.technique != TECHNIQUE_LOD_SINGLE && /* OpenGL's alone */
+                      r.technique != TECHNIQUE_OWN_LOD_LIT;
     if (!out)
         return 0;
     *out = (gtx_pipeline){GTX_PASS_FORWARD, GTX_BUFFER_PROXY_VERTICES, 0, 0};
@@ -273,15 +277,24 @@ static void begin(source *s, const recipe *r)
         add_file(s, shared[i]);
 }
 
+static void add_own(source *s, const char *own_main)
+{
+    add(s, "#undef normalize\n#line 1 1\n");
+    add(s, own_main);
+}
+
 /* Vertices that are lit have materials. */
-static void add_vertex(source *s, const recipe *r)
+static void add_vertex(source *s, const recipe *r, const char *own_main)
 {
     const gtx_technique by = r->technique;
-    const bool is_lit = by == TECHNIQUE_GRID_LIT || by == TECHNIQUE_GRID_WHOLE_LIT;
+    const bool own = by == TECHNIQUE_OWN_LOD_LIT;
+    const bool is_lit = own || by == TECHNIQUE_GRID_LIT || by == TECHNIQUE_GRID_WHOLE_LIT;
     if (is_lit && materials[r->material].file) {
         add_file(s, "geotex_surface.glsl");
         add_file(s, materials[r->material].file);
     }
+    if (own)
+        add_own(s, own_main);
     add_file(s, techniques[r->technique].vertex);
 }
 
@@ -292,12 +305,10 @@ static void add_fragment(source *s, const recipe *r, const char *own_main)
     add_file(s, materials[r->material].file);
     for (int i = 0; i < MAX_PARTS; ++i)
         add_file(s, t->parts[i]);
-    if (is_own(r->technique)) {
-        add(s, "#undef normalize\n#line 1 1\n");
-        add(s, own_main);
-    } else {
+    if (is_own(r->technique) && !t->forward)
+        add_own(s, own_main);
+    else
         add_file(s, r->pass == GTX_PASS_FORWARD ? t->forward : passes[r->pass].main);
-    }
 }
 
 uint32_t gtx_pipeline_source(uint32_t pipeline, gtx_stage stage, const char *own_main,
@@ -309,7 +320,7 @@ uint32_t gtx_pipeline_source(uint32_t pipeline, gtx_stage stage, const char *own
         return 0;
     begin(&s, &r);
     if (stage == GTX_STAGE_VERTEX)
-        add_vertex(&s, &r);
+        add_vertex(&s, &r, own_main);
     else
         add_fragment(&s, &r, own_main);
     return s.count;

@@ -12,6 +12,7 @@ struct gtx_planner {
     gtx_allocator allocator;
     gtx_costs costs;          /* as told, or all 0 */
     bool own_main;
+    bool own_vertices;        /* the view's shading gives colours at vertices, too */
     bool on_gpu;              /* it displaces blocks, and costs are its, where none were told */
     /* An instance each: its data for shaders, whether its winding is turned, and what it is drawn
      * by, as gtx_choose has it. */

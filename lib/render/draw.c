@@ -68,6 +68,9 @@ gtx_result gtx_draw(gtx_renderer *renderer, const gtx_view *view, const gtx_inst
         own.flags &= ~(uint32_t)GTX_VIEW_SHADING_BY_TILES;
         view = &own;
     }
+    if (renderer && view)
+        renderer->planner.own_vertices =
+            view->shading && gtx_shading_has(view->shading, TECHNIQUE_OWN_LOD_LIT);
     gtx_submission s = {.renderer = renderer, .view = view};
     gtx_result result = gtx_frame_begin(renderer ? &renderer->planner : NULL, view, instances,
                                         count, &frame, error);

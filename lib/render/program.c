@@ -179,10 +179,12 @@ gtx_result gtx_shading_create(gtx_renderer *renderer, const char *text, gtx_shad
         return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for a shading");
     /* Mains that do not say so may read what tiles do not have. */
     const bool tiles = renderer->gl.TexBuffer && strstr(text, "#pragma geotex tiles");
+    const bool vertices = strstr(text, "#pragma geotex vertices");
     gtx_result result = GTX_OK;
     for (int i = 0; i < OWN_TECHNIQUE_COUNT && !result; ++i) {
         const gtx_technique technique = (gtx_technique)(TECHNIQUE_OWN_CAST + i);
         if ((technique != TECHNIQUE_OWN_TILES || tiles) &&
+            (technique != TECHNIQUE_OWN_LOD_LIT || vertices) &&
             !is_displaced_otherwise(renderer, technique))
             result = build(renderer, gtx_pipeline_of(technique, GTX_PASS_FORWARD, MATERIAL_MAPS),
                            text, &shading->programs[i], error);

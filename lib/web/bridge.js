@@ -15,7 +15,7 @@ const TONES = ['', 'Linear', 'Reinhard', 'Cineon', 'ACESFilmic', '', 'AgX', 'Neu
 /* Radiance as three's MeshStandardMaterial has it: light over pi. What a scene lacks is left out, as
  * three does: rasterizers in software go through both sides of a branch. */
 const shadingText = ({lights, shadows, tone, srgb, fog, color, material}) => /* glsl */ `
-layout(location = 0) out vec4 web_out;
+${shadows ? '' : '#pragma geotex vertices'}
 uniform vec3 web_ambient, web_sky, web_ground, web_up;
 ${lights ? `uniform vec3 web_direction[${lights}], web_color[${lights}];` : ''}
 ${shadows ? `uniform mat4 web_shadow_matrix[${shadows}];
@@ -36,15 +36,8 @@ float web_lit(highp sampler2DShadow map, mat4 matrix, vec4 shadow, vec3 point, v
 }` : ''}
 ${tone ? ShaderChunk.tonemapping_pars_fragment : ''}
 ${fog ? 'uniform vec3 web_fog_color, web_fog_reach; uniform vec4 web_depth_row;' : ''}
-void main()
+vec4 web_shown(vec3 point, vec3 n, vec3 eye, gtx_material m, float alpha, float deviation)
 {
-    gtx_surface s;
-    if (!gtx_find(s))
-        discard;
-    vec3 n = gtx_world_normal(s), eye = -gtx_world_ray(s), point = gtx_world_point(s);
-    vec4 albedo = ${color ? 'gtx_albedo(s)' : 'gtx_color'};
-    gtx_material m = ${material ? 'gtx_material_of(s, albedo.rgb)'
-                                : 'gtx_material(albedo.rgb, vec3(0.0), 1.0, 1.0, 0.0, 1.0)'};
     vec3 emission = m.emission;
     float lit = m.lit;
     m.emission = vec3(0.0);
@@ -53,16 +46,38 @@ void main()
     vec3 sum = m.color * (1.0 - m.metallic) * around * m.occlusion;
 ${[...Array(lights).keys()].map((i) => `    sum += ` + (i < shadows ?
     `web_lit(web_shadow_map[${i}], web_shadow_matrix[${i}], web_shadow[${i}], point, n) * ` : '') +
-    `web_color[${i}] * gtx_shade(m, n, eye, web_direction[${i}], 0.0, s.deviation);`).join('\n')}
+    `web_color[${i}] * gtx_shade(m, n, eye, web_direction[${i}], 0.0, deviation);`).join('\n')}
     vec3 color = mix(m.color, sum * ${1 / Math.PI}, lit) + emission;
     ${tone ? `color = ${tone}ToneMapping(color);` : ''}
     ${srgb ? 'color = gtx_to_srgb(color);' : ''}
     ${fog ? `float depth = -dot(web_depth_row, vec4(point, 1.0));
     color = mix(color, web_fog_color, ${fog === 1 ? 'smoothstep(web_fog_reach.x, web_fog_reach.y, depth)'
         : '1.0 - exp(-web_fog_reach.z * web_fog_reach.z * depth * depth)'});` : ''}
-    web_out = vec4(color, albedo.a);
+    return vec4(color, alpha);
+}
+gtx_material web_plain(vec3 color)
+{
+    return gtx_material(color, vec3(0.0), 1.0, 1.0, 0.0, 1.0);
+}
+#ifdef GTX_OWN_VERTICES
+vec4 gtx_at_vertex(vec3 point, vec3 n, vec3 eye, vec4 tint)
+{
+    return web_shown(point, n, eye, web_plain(tint.rgb), tint.a, GTX_LEAST_DEVIATION);
+}
+#else
+layout(location = 0) out vec4 web_out;
+void main()
+{
+    gtx_surface s;
+    if (!gtx_find(s))
+        discard;
+    vec4 albedo = ${color ? 'gtx_albedo(s)' : 'gtx_color'};
+    web_out = web_shown(gtx_world_point(s), gtx_world_normal(s), -gtx_world_ray(s),
+                        ${material ? 'gtx_material_of(s, albedo.rgb)' : 'web_plain(albedo.rgb)'},
+                        albedo.a, s.deviation);
     gtx_write_depth(s);
 }
+#endif
 `;
 
 /* One for each renderer: the core, and shadings by what they take into account. */
