@@ -169,7 +169,7 @@ export class Bridge {
   }
 
   /* Instances in the forward pass. */
-  show(object, scene, camera, more, instances) {
+  show(object, scene, camera, material, more, instances) {
     const look = {
       color: instances.some(({model}) => model.asset.hasColor),
       material: instances.some(({model: {asset}}) => asset.hasMaterial || asset.hasEmission)};
@@ -177,7 +177,13 @@ export class Bridge {
                       ...this.output(scene, camera, look)};
     const shading = this.shadingOf(look);
     shading.set(uniforms);
-    this.draw(object, camera, {...more, shading}, instances);
+    const {gl} = this.geotex, {depth} = this.renderer.state.buffers;
+    /* What three has set for it, unless the scene overrides its material. */
+    const known = material === object.material ? {
+      depthFunc: depth.getReversed?.() ? gl.GEQUAL : gl.LEQUAL, depthMask: material.depthWrite,
+      colorMask: Array(4).fill(material.colorWrite),
+      cullFace: gl.BACK, frontFace: object.matrixWorld.determinant() < 0 ? gl.CW : gl.CCW} : {};
+    this.draw(object, camera, {...more, shading, known}, instances);
   }
 
   draw(object, camera, more, instances) {

@@ -96,6 +96,9 @@ export interface View {
   /** 1: reversed depth; 2: depth from 0 to 1. */
   flags?: number;
   shading?: Shading;
+  /** WebGL's state, where the page knows it and a browser would wait for the GPU's process. */
+  known?: {depthFunc?: number, depthMask?: boolean, cullFace?: number, frontFace?: number,
+           colorMask?: boolean[]};
 }
 
 export interface Instance {

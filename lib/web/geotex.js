@@ -260,12 +260,12 @@ export class Geotex {
   }
 
   /* Calls with WebGL's state kept, and the core's context current. */
-  around(call) {
+  around(call, known) {
     if (this.gl.isContextLost()) {
       this.core.GL.makeContextCurrent(this.context);
       return call();
     }
-    const state = new State(this.gl);
+    const state = new State(this.gl, known);
     this.core.GL.makeContextCurrent(this.context);
     try {
       return call();
@@ -346,7 +346,7 @@ export class Geotex {
     const shading = view.shading?.handle ?? 0;
     this.withNumbers(floats, (f, w) => {
       if (this.around(() => this.core._gtxw_draw(this.renderer, f, w, shading, w + 24, f + 148,
-                                                 handles.length)))
+                                                 handles.length), view.known ?? {}))
         this.must(0);
     }, whole);
   }

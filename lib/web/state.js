@@ -1,9 +1,10 @@
 /* The state of WebGL 2 that geotex touches. Kept here and not in the core, which knows of objects
- * only by the numbers that its glue gave them. */
+ * only by the numbers that its glue gave them. A browser asks the GPU's process for some of it, and
+ * waits: `known` is what a page knows of that while something is drawn, which unpacks nothing. */
 const TEXTURE_UNITS = 8;
 
 export class State {
-  constructor(gl) {
+  constructor(gl, known) {
     const get = (name) => gl.getParameter(name);
     this.program = get(gl.CURRENT_PROGRAM);
     this.array = get(gl.VERTEX_ARRAY_BINDING);
@@ -17,14 +18,16 @@ export class State {
                        get(gl.SAMPLER_BINDING)]);
     }
     this.enabled = [gl.DEPTH_TEST, gl.CULL_FACE, gl.BLEND].map((name) => [name, gl.isEnabled(name)]);
-    this.depthFunc = get(gl.DEPTH_FUNC);
-    this.depthMask = get(gl.DEPTH_WRITEMASK);
-    this.cullFace = get(gl.CULL_FACE_MODE);
-    this.frontFace = get(gl.FRONT_FACE);
-    this.colorMask = get(gl.COLOR_WRITEMASK);
-    this.unpack = ['ALIGNMENT', 'ROW_LENGTH', 'SKIP_ROWS', 'SKIP_PIXELS', 'SKIP_IMAGES',
-                   'IMAGE_HEIGHT', 'FLIP_Y_WEBGL', 'PREMULTIPLY_ALPHA_WEBGL']
+    this.depthFunc = known?.depthFunc ?? get(gl.DEPTH_FUNC);
+    this.depthMask = known?.depthMask ?? get(gl.DEPTH_WRITEMASK);
+    this.cullFace = known?.cullFace ?? get(gl.CULL_FACE_MODE);
+    this.frontFace = known?.frontFace ?? get(gl.FRONT_FACE);
+    this.colorMask = known?.colorMask ?? get(gl.COLOR_WRITEMASK);
+    this.unpack = known ? [] : ['ALIGNMENT', 'ROW_LENGTH', 'SKIP_ROWS', 'SKIP_PIXELS', 'SKIP_IMAGES',
+                                'IMAGE_HEIGHT', 'FLIP_Y_WEBGL', 'PREMULTIPLY_ALPHA_WEBGL']
         .map((name) => gl['UNPACK_' + name]).map((name) => [name, get(name)]);
+    if (known)
+      return;
     gl.pixelStorei(gl.UNPACK_FLIP_Y_WEBGL, false);
     gl.pixelStorei(gl.UNPACK_PREMULTIPLY_ALPHA_WEBGL, false);
   }

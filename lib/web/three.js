@@ -90,13 +90,13 @@ export class GeotexModel extends Mesh {
     this.#bridge = bridge;
     Object.assign(this, {type: 'GeotexModel', content, method: Method.AUTO, maxError: 1});
     const clip = new Matrix4();
-    this.onAfterRender = (renderer, scene, camera) => {
+    this.onAfterRender = (renderer, scene, camera, geometry, material) => {
       const {unit, texel} = this.model.need(
           clip.multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse)
               .multiply(this.matrixWorld).elements,
           renderer.getCurrentViewport(new Vector4()).w);
       content.seen(renderer.info.render.frame, unit * this.asset.lodError / this.maxError, texel);
-      bridge.show(this, scene, camera, this.way, this.placed);
+      bridge.show(this, scene, camera, material, this.way, this.placed);
     };
     this.onAfterShadow = (renderer, object, camera, shadowCamera) =>
       bridge.draw(this, shadowCamera, {...this.way, pass: Pass.DEPTH}, this.placed);

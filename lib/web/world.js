@@ -67,8 +67,8 @@ export class GeotexWorld extends Mesh {
     Object.assign(this, {type: 'GeotexWorld', origin, min, max, tileCount: n[0], unit: n[1],
                          fileBytes: n[9], maxError: 0.5, state: {}});
     this.onBeforeRender = (renderer, scene, camera) => this.update(camera);
-    this.onAfterRender = (renderer, scene, camera) =>
-      bridge.show(this, scene, camera, {}, this.#placed());
+    this.onAfterRender = (renderer, scene, camera, geometry, material) =>
+      bridge.show(this, scene, camera, material, {}, this.#placed());
     this.onAfterShadow = (renderer, object, camera, shadowCamera) =>
       bridge.draw(this, shadowCamera, {pass: Pass.DEPTH}, this.#placed());
   }
