@@ -37,16 +37,14 @@ layout(location = 0) in vec4 gtx_steps;
 layout(location = 1) in uint gtx_patch;
 #endif
 #ifdef GTX_SINGLE
-uniform vec4 gtx_place[3];                  /* what follows, of the only instance: depth needs no
-                                               more, and WebGL draws nothing by attributes that
-                                               are not enabled */
+uniform vec4 gtx_place[7];                  /* what follows, of the only instance */
 #define gtx_world_x gtx_place[0]
 #define gtx_world_y gtx_place[1]
 #define gtx_world_z gtx_place[2]
-#define gtx_object_x vec4(0.0)
-#define gtx_object_y vec4(0.0)
-#define gtx_object_z vec4(0.0)
-#define gtx_tint vec4(0.0)
+#define gtx_object_x gtx_place[3]
+#define gtx_object_y gtx_place[4]
+#define gtx_object_z gtx_place[5]
+#define gtx_tint gtx_place[6]
 #define gtx_instance 0u
 #else
 layout(location = 2) in vec4 gtx_world_x;   /* as in geotex_proxy.vert */

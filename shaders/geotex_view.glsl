@@ -80,7 +80,7 @@ float gtx_diffuse(float nl, float nv, float lv, float deviation)
 /* All are unit and in one space. */
 float gtx_diffuse(vec3 n, vec3 eye, vec3 light, float deviation)
 {
-#if defined(GTX_VERTEX_NORMALS) && !defined(GTX_GRID)
+#if (defined(GTX_VERTEX_NORMALS) && !defined(GTX_GRID)) || defined(GTX_OWN_VERTICES)
     if (deviation == GTX_LEAST_DEVIATION)
         return max(dot(n, light), 0.0);
 #endif

@@ -118,8 +118,9 @@ static void draw_side(const gtx_draw_call *call, const run *r, uint32_t level,
 {
     gtx_planner *planner = call->planner;
     const gtx_lod_level *l = &r->model->lods.levels[level];
-    gtx_frame_draw draw =
-        draw_of(call, r, gtx_lod_technique(call, r->model, level, front), r->first, r->count);
+    const gtx_technique technique = gtx_lod_technique(
+        call, r->model, level, front && (r->count == 1 || !gtx_is_own(call)));
+    gtx_frame_draw draw = draw_of(call, r, technique, r->first, r->count);
     draw.cull = cull;
     draw.vertices = GTX_BUFFER_LOD_VERTICES;
     draw.indices = GTX_BUFFER_LOD_INDICES;

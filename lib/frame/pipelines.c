@@ -21,6 +21,7 @@ typedef struct technique_files {
 #define GRID "#define GTX_GRID\n"
 #define TRIMMED "#define GTX_TRIMMED\n"
 #define LIT "#define GTX_LIT\n"
+#define SINGLE "#define GTX_SINGLE\n"
 #define NORMALS "#define GTX_VERTEX_NORMALS\n"
 #define BLOCKS GRID "#define GTX_BLOCKS\n"
 #define ALL_MAPS {MATERIAL_MAPS, MATERIAL_MAPS, MATERIAL_MAPS, MATERIAL_MAPS}
@@ -45,7 +46,7 @@ static const technique_files techniques[TECHNIQUE_COUNT] = {
     [TECHNIQUE_LOD_FRONT] = {"LOD mesh front", "geotex_lod.vert", FRONT, {NULL},
                              "geotex_lod_front.frag",
                              {MATERIAL_NONE, MATERIAL_COLORS, MATERIAL_MAPS, MATERIAL_CONSTANT}},
-    [TECHNIQUE_LOD_SINGLE] = {"LOD mesh single", "geotex_lod.vert", "#define GTX_SINGLE\n",
+    [TECHNIQUE_LOD_SINGLE] = {"LOD mesh single", "geotex_lod.vert", SINGLE,
                               {"geotex_lod_fragment.glsl"}, NULL, {0}},
     [TECHNIQUE_LOD_LIT] = {"lit LOD mesh", "geotex_lod.vert", LIT, {NULL},
                            "geotex_lod_lit.frag", {MATERIAL_NONE}},
@@ -104,7 +105,7 @@ static const technique_files techniques[TECHNIQUE_COUNT] = {
                               "geotex_rays.glsl"},
                              NULL, ALL_MAPS},
     [TECHNIQUE_OWN_LOD_LIT] = {"lit LOD mesh, own", "geotex_lod.vert",
-                               LIT "#define GTX_OWN_VERTICES\n", {NULL},
+                               LIT SINGLE "#define GTX_OWN_VERTICES\n", {NULL},
                                "geotex_lod_lit.frag", ALL_MAPS},
 };
 

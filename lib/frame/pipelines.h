@@ -33,7 +33,8 @@ typedef enum gtx_technique {
     TECHNIQUE_OWN_GRID_NORMALS, /* those that show whole, with normals of vertices */
     TECHNIQUE_OWN_BLOCKS,
     TECHNIQUE_OWN_TILES,
-    TECHNIQUE_OWN_LOD_LIT,    /* front faces alone, with colours of vertices */
+    TECHNIQUE_OWN_LOD_LIT,    /* front faces alone of one instance, with colours of
+                                 vertices */
     TECHNIQUE_COUNT
 } gtx_technique;
 

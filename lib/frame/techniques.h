@@ -13,7 +13,8 @@ bool gtx_is_own(const gtx_draw_call *call);
 bool gtx_is_lit(const gtx_draw_call *call, const gtx_model *model, uint32_t level);
 
 gtx_technique gtx_cast_technique(const gtx_draw_call *call, bool box);
-/* `front`: front faces alone, under transforms that keep angles. */
+/* `front`: front faces alone, under transforms that keep angles; with an engine's own main those of
+ * one instance. */
 gtx_technique gtx_lod_technique(const gtx_draw_call *call, const gtx_model *model, uint32_t level,
                                 bool front);
 /* `looks` of GTX_GRID_..., and of GTX_BLOCKS_.... */

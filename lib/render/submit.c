@@ -173,13 +173,14 @@ void gtx_submit_draw(const gtx_frame_draw *draw, void *user)
     gtx_submission *s = user;
     const gtx_renderer *renderer = s->renderer;
     const gtx_technique technique = gtx_pipeline_technique(draw->pipeline);
-    const bool single = s->view->pass == GTX_PASS_DEPTH && technique == TECHNIQUE_LOD &&
-                        draw->instance_count == 1;
+    const bool depth = s->view->pass == GTX_PASS_DEPTH && technique == TECHNIQUE_LOD &&
+                       draw->instance_count == 1;
+    const bool single = depth || technique == TECHNIQUE_OWN_LOD_LIT;
     const gtx_instance_data *placed = &renderer->planner.instances[draw->first_instance];
     if (draw->model != s->model)
         bind_textures(&renderer->gl, draw->model);
     s->model = draw->model;
-    use_program(s, program_of(s, draw, single), draw->constants);
+    use_program(s, program_of(s, draw, depth), draw->constants);
     cull(s, draw);
     if (s->view->flags & GTX_VIEW_BY_SAMPLES && renderer->gl.MinSampleShading)
         shade_samples(&renderer->gl, draw->vertices == GTX_BUFFER_PROXY_VERTICES);
@@ -191,7 +192,7 @@ void gtx_submit_draw(const gtx_frame_draw *draw, void *user)
         submit_grid(s, draw);
     } else if (draw->vertices == GTX_BUFFER_LOD_VERTICES) {
         if (single)
-            renderer->gl.Uniform4fv(s->program->place, 3, placed->world[0]);
+            renderer->gl.Uniform4fv(s->program->place, 7, placed->world[0]);
         else
             set_instances(renderer, draw->first_instance, 1);
         set_lods(renderer, draw->model);

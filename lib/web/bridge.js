@@ -36,6 +36,15 @@ float web_lit(highp sampler2DShadow map, mat4 matrix, vec4 shadow, vec3 point, v
 }` : ''}
 ${tone ? ShaderChunk.tonemapping_pars_fragment : ''}
 ${fog ? 'uniform vec3 web_fog_color, web_fog_reach; uniform vec4 web_depth_row;' : ''}
+vec3 web_shade(gtx_material m, vec3 n, vec3 eye, vec3 light, float deviation)
+{
+#ifdef GTX_OWN_VERTICES /* the same of what is rough and no metal */
+    float nl = max(dot(n, light), 0.0), f = 0.04 + 0.96 * gtx_half_way(n, eye, light).w;
+    return (m.color * (1.0 - f) + f * 0.5 / max(nl + max(dot(n, eye), 1e-3), 1e-6)) * nl;
+#else
+    return gtx_shade(m, n, eye, light, 0.0, deviation);
+#endif
+}
 vec4 web_shown(vec3 point, vec3 n, vec3 eye, gtx_material m, float alpha, float deviation)
 {
     vec3 emission = m.emission;
@@ -46,7 +55,7 @@ vec4 web_shown(vec3 point, vec3 n, vec3 eye, gtx_material m, float alpha, float 
     vec3 sum = m.color * (1.0 - m.metallic) * around * m.occlusion;
 ${[...Array(lights).keys()].map((i) => `    sum += ` + (i < shadows ?
     `web_lit(web_shadow_map[${i}], web_shadow_matrix[${i}], web_shadow[${i}], point, n) * ` : '') +
-    `web_color[${i}] * gtx_shade(m, n, eye, web_direction[${i}], 0.0, deviation);`).join('\n')}
+    `web_color[${i}] * web_shade(m, n, eye, web_direction[${i}], deviation);`).join('\n')}
     vec3 color = mix(m.color, sum * ${1 / Math.PI}, lit) + emission;
     ${tone ? `color = ${tone}ToneMapping(color);` : ''}
     ${srgb ? 'color = gtx_to_srgb(color);' : ''}
