@@ -4,13 +4,15 @@ web := $(build)/web
 web_package := $(web)/geotex
 # Debian's emscripten does not find its own acorn.
 emcc := NODE_PATH=/usr/share/nodejs emcc
-# -Os, and -Oz where it is linked: 148.6 KB gzipped of the 150 that a page is to wait for at most.
+# -Os, and -Oz where it is linked: 144.3 KB gzipped of the 150 that a page is to wait for at most.
 # -Oz for all but frame and derive makes it no smaller.
 web_flags := -std=c11 -Os -flto -Wall -Wextra $(if $(filter 1,$(werror)),-Werror) \
              -ffp-contract=off -fvisibility=hidden -Iinclude -Ilib -Ishaders -DGTX_BUILDING \
              -DGTX_ZSTD
-# A page has its textures uncompressed: absent.c.
-web_sources := $(filter-out lib/frame/compress_rows.c, \
+# But for what absent.c stands for.
+web_absent  := $(addprefix lib/frame/,compress_rows.c tiles.c project.c occlusion.c) \
+               lib/render/stream.c
+web_sources := $(filter-out $(web_absent), \
                  $(foreach r,$(ROOMS_CORE),$(wildcard lib/$(r)/*.c lib/$(r)/*/*.c)))
 web_objects := $(web_sources:%.c=$(web)/%.o) $(web)/shader_sources.o
 zstd_dir := $(web)/zstd/lib
@@ -64,7 +66,8 @@ $(web_package)/core.js: $(web_faces) $(web)/core.a $(web)/zstd.o
 	  -sMODULARIZE=1 -sEXPORT_ES6=1 -sENVIRONMENT=web,worker -sFILESYSTEM=0 -sMALLOC=emmalloc \
 	  -sMIN_WEBGL_VERSION=2 -sMAX_WEBGL_VERSION=2 -sALLOW_MEMORY_GROWTH=1 \
 	  -sINITIAL_MEMORY=512KB -sMEMORY_GROWTH_GEOMETRIC_STEP=0.05 -sTOTAL_STACK=128KB \
-	  -sGL_SUPPORT_AUTOMATIC_ENABLE_EXTENSIONS=0 -sINCOMING_MODULE_JS_API=[locateFile] \
+	  -sGL_SUPPORT_AUTOMATIC_ENABLE_EXTENSIONS=0 -sGL_TRACK_ERRORS=0 -sGL_POOL_TEMP_BUFFERS=0 \
+	  -sTEXTDECODER=2 -sSUPPORT_ERRNO=0 -sINCOMING_MODULE_JS_API=[locateFile] \
 	  -sEXPORTED_RUNTIME_METHODS=$(subst $(space),$(comma),$(web_methods)) \
 	  -sEXPORTED_FUNCTIONS=_malloc,_free
 
