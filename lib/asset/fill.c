@@ -134,7 +134,13 @@ static void fill_row(const gtx_fill *area, uint32_t j, uint8_t mark)
 void gtx_fill_normals(const gtx_fill *area, uint32_t rings)
 {
     measure_rings(area);
-    for (uint32_t ring = 1; ring <= rings; ++ring)
+    uint8_t farthest = 1;
+    for (uint32_t j = 0; j < area->height; ++j)
+        for (uint32_t i = 0; i < area->width; ++i) {
+            const uint8_t ring = area->ring[j * area->stride + i];
+            farthest = ring > farthest ? ring : farthest;
+        }
+    for (uint32_t ring = 1; ring <= rings && ring < farthest; ++ring)
         for (uint32_t j = 0; j < area->height; ++j)
             fill_row(area, j, (uint8_t)(ring + 1));
 }

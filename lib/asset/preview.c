@@ -56,7 +56,12 @@ typedef struct shaping {
     float *normals;               /* 3 per vertex, of any length */
     uint8_t *ring;
     double looks;                 /* at texels that triangles may still take */
+    uint32_t rings;               /* of texels around what triangles cover */
 } shaping;
+
+/* As many as there are; or, where the forward pass looks at vertices alone, what lookups between
+ * texels of triangles may meet. */
+enum { ALL_RINGS = 128, LIT_RINGS = 2 };
 
 void gtx_mesh_normals(const gtx_lod_mesh *mesh, float *normals)
 {
@@ -195,16 +200,16 @@ static void shape_patch(shaping *s, uint32_t index)
     const size_t first = row * info->page_width + patch->rect[0];
     const gtx_fill area = {s->asset->normal[0] + 2 * first, s->ring + first, info->page_width,
                            patch->rect[2], patch->rect[3]};
-    gtx_patch wide = *patch;
-    wide.dilation = UINT16_MAX;
-    gtx_fill_normals(&area, gtx_fill_rings(&wide, 0));
+    gtx_fill_normals(&area, s->rings);
 }
 
 /* False when memory is out. */
 static bool shape(gtx_asset *asset)
 {
     const size_t texels = (size_t)texels_of(&asset->info);
-    shaping s = {.asset = asset};
+    const gtx_info *info = &asset->info;
+    const bool lit = !info->has_color && !info->has_material && !info->has_emission;
+    shaping s = {.asset = asset, .rings = lit ? LIT_RINGS : ALL_RINGS};
     gtx_get_lod_mesh(asset, 0, &s.mesh);
     const gtx_allocator *hooks = &asset->allocator;
     s.normals = gtx_alloc_array(hooks, s.mesh.vertex_count, 3 * sizeof *s.normals);

@@ -19,6 +19,8 @@ static gtx_result need_programs(gtx_renderer *renderer, const gtx_view *view, gt
     const bool paper = view->method == GTX_METHOD_PAPER;
     const bool blocks = renderer->planner.on_gpu && !paper, grids = !blocks && !paper;
     const bool forward = view->pass == GTX_PASS_FORWARD;
+    if (forward && view->shading)
+        return GTX_OK;
     const bool wanted[TECHNIQUE_COUNT] = {
         [TECHNIQUE_CAST] = !paper,
         [TECHNIQUE_BOX] = !paper,

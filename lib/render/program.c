@@ -143,22 +143,10 @@ gtx_result gtx_programs_need(gtx_renderer *renderer, gtx_technique technique, gt
     return result;
 }
 
-/* What only a CPU displaces where a GPU draws, and the other way round. */
-static bool is_displaced_otherwise(const gtx_renderer *renderer, gtx_technique technique)
+bool gtx_is_displaced_otherwise(const gtx_renderer *renderer, gtx_technique technique)
 {
     return renderer->planner.on_gpu ? gtx_technique_is_grid(technique)
                                     : gtx_technique_is_blocks(technique);
-}
-
-gtx_result gtx_programs_create(gtx_renderer *renderer, gtx_error *error)
-{
-    gtx_result result = GTX_OK;
-    for (int i = 0; i < TECHNIQUE_COUNT && !result; ++i)
-        if (gtx_technique_is_forward((gtx_technique)i) &&
-            (i != TECHNIQUE_TILES || renderer->gl.TexBuffer) &&
-            !is_displaced_otherwise(renderer, (gtx_technique)i))
-            result = gtx_programs_need(renderer, (gtx_technique)i, GTX_PASS_FORWARD, error);
-    return result;
 }
 
 void gtx_programs_destroy(gtx_renderer *renderer)
@@ -185,7 +173,7 @@ gtx_result gtx_shading_create(gtx_renderer *renderer, const char *text, gtx_shad
         const gtx_technique technique = (gtx_technique)(TECHNIQUE_OWN_CAST + i);
         if ((technique != TECHNIQUE_OWN_TILES || tiles) &&
             (technique != TECHNIQUE_OWN_LOD_LIT || vertices) &&
-            !is_displaced_otherwise(renderer, technique))
+            !gtx_is_displaced_otherwise(renderer, technique))
             result = build(renderer, gtx_pipeline_of(technique, GTX_PASS_FORWARD, MATERIAL_MAPS),
                            text, &shading->programs[i], error);
     }

@@ -32,7 +32,9 @@ static inline bool gtx_shading_has(const gtx_shading *shading, gtx_technique tec
 /* Compiles what a technique needs for a pass, with any material. Errors: SHADER. */
 gtx_result gtx_programs_need(gtx_renderer *renderer, gtx_technique technique, gtx_pass pass,
                              gtx_error *error);
-/* Those of the forward pass, for all techniques that the context has. Errors: SHADER. */
+/* What only a CPU displaces where a GPU draws, and the other way round. */
+bool gtx_is_displaced_otherwise(const gtx_renderer *renderer, gtx_technique technique);
+/* ahead.c: those of the forward pass, for all techniques that the context has. Errors: SHADER. */
 gtx_result gtx_programs_create(gtx_renderer *renderer, gtx_error *error);
 void gtx_programs_destroy(gtx_renderer *renderer);
 /* Sets what differs of the uniforms of the program in use; all of them where `before` is NULL. */

@@ -1,12 +1,19 @@
 /* What a page never asks for, and need not wait for: its textures are uncompressed, and no encoder
  * of blocks is linked; WebGL has no buffer textures, by which tiles are cast, nor is anything hidden
- * where nothing is cast so. Built by emscripten alone; see web.mk. */
+ * where nothing is cast so; and what a page has a shading for is drawn by no other program. Built by
+ * emscripten alone; see web.mk. */
 #include "frame/compress.h"
 #include "render/renderer.h"
 
 void gtx_compress_rows(const gtx_asset *asset, const gtx_block_rows *rows)
 {
     (void)asset, (void)rows;
+}
+
+gtx_result gtx_programs_create(gtx_renderer *renderer, gtx_error *error)
+{
+    (void)renderer, (void)error;
+    return GTX_OK;
 }
 
 uint32_t gtx_tiles_most(uint32_t texels)

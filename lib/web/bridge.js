@@ -2,9 +2,9 @@
  *
  * Of three's lights: directional ones with their shadows, ambient and hemisphere light; fog, tone
  * mapping and colour spaces as three has them, by its own shader chunks. */
-import {AmbientLight, Box3, BufferAttribute, BufferGeometry, ColorManagement, DirectionalLight,
-        HemisphereLight, Matrix3, Matrix4, Ray, ShaderChunk, SRGBColorSpace, Vector3,
-        Vector4} from 'three';
+import {AmbientLight, Box3, BufferAttribute, BufferGeometry, Camera, ColorManagement,
+        DirectionalLight, HemisphereLight, Matrix3, Matrix4, Mesh, RawShaderMaterial, Ray, ShaderChunk,
+        SRGBColorSpace, Vector3, Vector4} from 'three';
 import {Geotex} from './geotex.js';
 
 const MAX_LIGHTS = 4, FIRST_UNIT = 8; /* units below are geotex's */
@@ -101,8 +101,13 @@ export class Bridge {
     return this.#all.get(renderer);
   }
 
+  /* What three draws of a model: nothing, by a program that is there before any bytes are. */
   constructor(renderer, geotex) {
-    Object.assign(this, {renderer, geotex});
+    const material = new RawShaderMaterial({
+      colorWrite: false, depthWrite: false, fragmentShader: 'void main() {}',
+      vertexShader: 'void main() { gl_Position = vec4(0.0); }'});
+    Object.assign(this, {renderer, geotex, material});
+    renderer.compile(new Mesh(new BufferGeometry(), material), new Camera());
   }
 
   /* Compiled when first needed, and kept. */

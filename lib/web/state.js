@@ -1,6 +1,6 @@
 /* The state of WebGL 2 that geotex touches. Kept here and not in the core, which knows of objects
  * only by the numbers that its glue gave them. A browser asks the GPU's process for some of it, and
- * waits: `known` is what a page knows of that while something is drawn, which unpacks nothing. */
+ * waits: `known` is what a page knows of it where something is drawn, and all else only unpacks. */
 const TEXTURE_UNITS = 8;
 
 export class State {
@@ -17,17 +17,18 @@ export class State {
       this.units.push([get(gl.TEXTURE_BINDING_2D), get(gl.TEXTURE_BINDING_2D_ARRAY),
                        get(gl.SAMPLER_BINDING)]);
     }
-    this.enabled = [gl.DEPTH_TEST, gl.CULL_FACE, gl.BLEND].map((name) => [name, gl.isEnabled(name)]);
-    this.depthFunc = known?.depthFunc ?? get(gl.DEPTH_FUNC);
-    this.depthMask = known?.depthMask ?? get(gl.DEPTH_WRITEMASK);
-    this.cullFace = known?.cullFace ?? get(gl.CULL_FACE_MODE);
-    this.frontFace = known?.frontFace ?? get(gl.FRONT_FACE);
-    this.colorMask = known?.colorMask ?? get(gl.COLOR_WRITEMASK);
-    this.unpack = known ? [] : ['ALIGNMENT', 'ROW_LENGTH', 'SKIP_ROWS', 'SKIP_PIXELS', 'SKIP_IMAGES',
-                                'IMAGE_HEIGHT', 'FLIP_Y_WEBGL', 'PREMULTIPLY_ALPHA_WEBGL']
-        .map((name) => gl['UNPACK_' + name]).map((name) => [name, get(name)]);
-    if (known)
+    if (known) {
+      this.enabled = [gl.DEPTH_TEST, gl.CULL_FACE, gl.BLEND].map((name) => [name, gl.isEnabled(name)]);
+      this.depthFunc = known.depthFunc ?? get(gl.DEPTH_FUNC);
+      this.depthMask = known.depthMask ?? get(gl.DEPTH_WRITEMASK);
+      this.cullFace = known.cullFace ?? get(gl.CULL_FACE_MODE);
+      this.frontFace = known.frontFace ?? get(gl.FRONT_FACE);
+      this.colorMask = known.colorMask ?? get(gl.COLOR_WRITEMASK);
       return;
+    }
+    this.unpack = ['ALIGNMENT', 'ROW_LENGTH', 'SKIP_ROWS', 'SKIP_PIXELS', 'SKIP_IMAGES',
+                   'IMAGE_HEIGHT', 'FLIP_Y_WEBGL', 'PREMULTIPLY_ALPHA_WEBGL']
+        .map((name) => gl['UNPACK_' + name]).map((name) => [name, get(name)]);
     gl.pixelStorei(gl.UNPACK_FLIP_Y_WEBGL, false);
     gl.pixelStorei(gl.UNPACK_PREMULTIPLY_ALPHA_WEBGL, false);
   }
@@ -44,6 +45,10 @@ export class State {
       gl.bindSampler(i, sampler);
     });
     gl.activeTexture(this.unit);
+    for (const [name, value] of this.unpack ?? [])
+      gl.pixelStorei(name, value);
+    if (!this.enabled)
+      return;
     for (const [name, on] of this.enabled)
       on ? gl.enable(name) : gl.disable(name);
     gl.depthFunc(this.depthFunc);
@@ -51,7 +56,5 @@ export class State {
     gl.cullFace(this.cullFace);
     gl.frontFace(this.frontFace);
     gl.colorMask(...this.colorMask);
-    for (const [name, value] of this.unpack)
-      gl.pixelStorei(name, value);
   }
 }

@@ -2,7 +2,7 @@
  *
  *   const model = await new GeotexLoader(renderer).loadAsync('bunny.gtx');
  *   scene.add(model); */
-import {FileLoader, Loader, Matrix4, Mesh, MeshBasicMaterial, Vector4} from 'three';
+import {FileLoader, Loader, Matrix4, Mesh, Vector4} from 'three';
 import {boundsOf, Bridge, meet} from './bridge.js';
 import {Method, Pass} from './geotex.js';
 import {isBlurred, modelsOf} from './load.js';
@@ -86,7 +86,7 @@ export class GeotexModel extends Mesh {
 
   /* `content`: what clones share, an asset and its model, replaced as better ones come. */
   constructor(bridge, content) {
-    super(boundsOf(content.asset), new MeshBasicMaterial({colorWrite: false, depthWrite: false}));
+    super(boundsOf(content.asset), bridge.material);
     this.#bridge = bridge;
     Object.assign(this, {type: 'GeotexModel', content, method: Method.AUTO, maxError: 1});
     const clip = new Matrix4();
@@ -148,10 +148,8 @@ export class GeotexModel extends Mesh {
 
   /* Frees the model and its asset, which clones share. */
   dispose() {
-    this.#bridge.renderer.state.useProgram(null); /* which the material may take with it */
     this.content.dispose();
     this.geometry.dispose();
-    this.material.dispose();
   }
 }
 

@@ -11,7 +11,7 @@ web_flags := -std=c11 -Os -flto -Wall -Wextra $(if $(filter 1,$(werror)),-Werror
              -DGTX_ZSTD
 # But for what absent.c stands for.
 web_absent  := $(addprefix lib/frame/,compress_rows.c tiles.c project.c occlusion.c) \
-               lib/render/stream.c
+               lib/render/stream.c lib/render/ahead.c
 web_sources := $(filter-out $(web_absent), \
                  $(foreach r,$(ROOMS_CORE),$(wildcard lib/$(r)/*.c lib/$(r)/*/*.c)))
 web_objects := $(web_sources:%.c=$(web)/%.o) $(web)/shader_sources.o

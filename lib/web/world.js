@@ -4,7 +4,7 @@
  *   scene.add(await GeotexWorld.open(renderer, 'world/'));
  *
  * Its space is that of the tiles' coordinates less `origin`, the middle of the world: +Y is up. */
-import {Matrix4, Mesh, MeshBasicMaterial} from 'three';
+import {Matrix4, Mesh} from 'three';
 import {boundsOf, Bridge, meet} from './bridge.js';
 import {Pass} from './geotex.js';
 import {failure, GeotexError, withBytes} from './inside.js';
@@ -57,7 +57,7 @@ export class GeotexWorld extends Mesh {
     const from = core._gtxw_world_info(stream) / 8, n = [...core.HEAPF64.subarray(from, from + 10)];
     const origin = [2, 3, 4].map((k) => (n[k] + n[k + 3]) / 2);
     const [min, max] = [2, 5].map((first) => origin.map((o, k) => n[first + k] - o));
-    super(boundsOf({min, max}), new MeshBasicMaterial({colorWrite: false, depthWrite: false}));
+    super(boundsOf({min, max}), bridge.material);
     worlds.set(number, this);
     this.#bridge = bridge;
     this.#folder = folder;
@@ -176,8 +176,6 @@ export class GeotexWorld extends Mesh {
     geotex.core.worlds.delete(this.#number);
     this.#stream = 0;
     this.#clear();
-    this.#bridge.renderer.state.useProgram(null); /* which the material may take with it */
     this.geometry.dispose();
-    this.material.dispose();
   }
 }
