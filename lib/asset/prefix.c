@@ -10,9 +10,9 @@
 
 #include <inttypes.h>
 
-/* Texels for each triangle, at most: fewer blur what lies between vertices. And of what has neither
- * colours nor materials, which the forward pass lights at vertices: other passes alone look these
- * up. */
+/* Texels for each triangle, at most: fewer blur what lies between vertices. And where vertices have
+ * normals, by which the forward pass lights what has neither colours nor materials: other passes
+ * alone look these up. */
 enum { TEXELS = 4, LIT_TEXELS = 1 };
 
 /* What comes of the first bytes. */
@@ -256,7 +256,7 @@ static gtx_asset *preview(beginning *b)
     gtx_lod_mesh mesh;
     gtx_get_lod_mesh(b->source, 0, &mesh);
     const bool images = b->info.has_color || b->info.has_material || b->info.has_emission;
-    if (!images && !b->normals)
+    if (mesh.normals && !images && !b->normals)
         shape_preview(b, gtx_preview_shift(&b->layout.info, LIT_TEXELS * mesh.triangle_count));
     if (!is_allowed(b, source_bytes(b) + preview_bytes(b, &mesh)))
         return NULL;

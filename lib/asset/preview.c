@@ -59,8 +59,8 @@ typedef struct shaping {
     uint32_t rings;               /* of texels around what triangles cover */
 } shaping;
 
-/* As many as there are; or, where the forward pass looks at vertices alone, what lookups between
- * texels of triangles may meet. */
+/* As many as there are; or, where the forward pass has one level to draw, which it lights at
+ * vertices, what lookups between texels of its triangles may meet. */
 enum { ALL_RINGS = 128, LIT_RINGS = 2 };
 
 void gtx_mesh_normals(const gtx_lod_mesh *mesh, float *normals)
@@ -208,7 +208,8 @@ static bool shape(gtx_asset *asset)
 {
     const size_t texels = (size_t)texels_of(&asset->info);
     const gtx_info *info = &asset->info;
-    const bool lit = !info->has_color && !info->has_material && !info->has_emission;
+    const bool lit = info->lod_levels == 1 && !info->has_color && !info->has_material &&
+                     !info->has_emission;
     shaping s = {.asset = asset, .rings = lit ? LIT_RINGS : ALL_RINGS};
     gtx_get_lod_mesh(asset, 0, &s.mesh);
     const gtx_allocator *hooks = &asset->allocator;

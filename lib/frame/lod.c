@@ -245,7 +245,7 @@ void gtx_lod_fill(const gtx_asset *asset, uint32_t k, const gtx_allocator *alloc
     gtx_lod_level *level = &out->levels[k];
     gtx_lod_mesh source;
     gtx_get_lod_mesh(asset, k, &source);
-    uint8_t *normals = gtx_lod_normals(asset, &source, allocator);
+    uint8_t *normals = gtx_lod_normals(asset, k, &source, allocator);
     source.normals = normals ? normals : source.normals;
     split(out, level, &source);
     free_copies(level, allocator);

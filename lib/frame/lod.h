@@ -82,11 +82,11 @@ void gtx_lod_measure(const gtx_asset *asset, uint32_t level, const gtx_allocator
 gtx_result gtx_lod_place(const gtx_allocator *allocator, gtx_lod_meshes *out, gtx_error *error);
 void gtx_lod_fill(const gtx_asset *asset, uint32_t level, const gtx_allocator *allocator,
                   gtx_lod_meshes *out);
-/* lod_normals.c: whether a level may be lit by normals of its vertices; those of a level of a
- * file's beginning that has none, as in the file, NULL for others and without memory; and of one
- * that is filled its normals, and whether they are enough. */
+/* lod_normals.c: whether a level may be lit by normals of its vertices; normals made up for the
+ * finest level of a file's beginning that has none, as a file has them, else, and without memory,
+ * NULL; and of a level that is filled its normals, and whether they are enough. */
 bool gtx_lod_may_be_lit(const gtx_asset *asset, uint32_t level, const gtx_lod_level *of);
-uint8_t *gtx_lod_normals(const gtx_asset *asset, const gtx_lod_mesh *source,
+uint8_t *gtx_lod_normals(const gtx_asset *asset, uint32_t level, const gtx_lod_mesh *source,
                          const gtx_allocator *allocator);
 void gtx_lod_light(const gtx_asset *asset, uint32_t level, const gtx_lod_mesh *source,
                    gtx_lod_meshes *out);

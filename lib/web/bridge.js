@@ -106,6 +106,7 @@ export class Bridge {
     const material = new RawShaderMaterial({
       colorWrite: false, depthWrite: false, fragmentShader: 'void main() {}',
       vertexShader: 'void main() { gl_Position = vec4(0.0); }'});
+    material.dispose = () => {}; /* of a model's, by whoever clears a scene: others have it */
     Object.assign(this, {renderer, geotex, material});
     renderer.compile(new Mesh(new BufferGeometry(), material), new Camera());
   }
