@@ -140,12 +140,11 @@ static void draw_side(const gtx_draw_call *call, const run *r, uint32_t level,
 static bool hides_backs(const gtx_draw_call *call, const run *r, uint32_t level)
 {
     const gtx_lod_meshes *lods = &r->model->lods;
-    bool hidden = !lods->edited_count && !call->sight.two &&
-                  (!gtx_is_own(call) || call->planner->own_vertices);
+    bool hidden = !lods->edited_count && (!gtx_is_own(call) || call->planner->own_vertices);
     for (uint32_t i = 0; i < r->count && hidden; ++i) {
         const gtx_frustum f =
             gtx_frustum_of(call, r->model, &call->planner->instances[r->first + i]);
-        hidden = !gtx_is_before_near(&f, r->model->sphere) && gtx_lod_hides_backs(lods, level, &f);
+        hidden = gtx_lod_hides_backs(lods, level, &f);
     }
     return hidden;
 }
@@ -157,7 +156,8 @@ static void draw_lod(const gtx_draw_call *call, const run *r, uint32_t level, co
 {
     const gtx_lod_meshes *lods = &r->model->lods;
     const bool own = gtx_is_own(call);
-    bool front = own || (call->view->pass == GTX_PASS_FORWARD && !gtx_is_lit(call, r->model, level));
+    bool front =
+        own || (call->view->pass == GTX_PASS_FORWARD && !gtx_is_lit(call, r->model, level));
     for (uint32_t i = 0; i < r->count && !own; ++i)
         front = front && gtx_keeps_angles(&call->planner->instances[r->first + i]);
     if (lods->one_sided)

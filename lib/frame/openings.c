@@ -196,7 +196,11 @@ void gtx_lod_find_openings(const gtx_asset *asset, const gtx_allocator *allocato
 
 bool gtx_lod_hides_backs(const gtx_lod_meshes *lods, uint32_t level, const gtx_frustum *f)
 {
-    bool hidden = lods->solid;
+    const double *near = f->side[0].row;
+    double least = near[3];   /* of what is before the near plane */
+    for (int k = 0; k < 3; ++k)
+        least += fmin(near[k] * lods->low[k], near[k] * lods->high[k]);
+    bool hidden = lods->solid && !f->two && least > 0;
     for (uint32_t i = 0; i < lods->opening_count; ++i) {
         const float *o = lods->openings[i];
         const double begins = (double)o[3] - (double)lods->levels[level].error;

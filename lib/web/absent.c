@@ -1,7 +1,7 @@
 /* What a page never asks for, and need not wait for: its textures are uncompressed, and no encoder
- * of blocks is linked; WebGL has no buffer textures, by which tiles are cast, nor is anything hidden
- * where nothing is cast so; and what a page has a shading for is drawn by no other program. Built by
- * emscripten alone; see web.mk. */
+ * of blocks is linked; WebGL has no buffer textures, by which tiles are cast, nor is anything
+ * hidden where nothing is cast so; and what a page has a shading for is drawn by no other program.
+ * Built by emscripten alone; see web.mk. */
 #include "frame/compress.h"
 #include "render/renderer.h"
 

@@ -12,7 +12,7 @@ static subject open_sphere(stage *s, lod_looks looks, uint16_t flags)
 
 /* Draws of a frame: by lit LOD meshes, by others, and by height fields. */
 typedef struct drawn {
-    int lit, mapped, fields;
+    int lit, mapped, fields, backs;
 } drawn;
 
 static void count_draw(const gtx_frame_draw *draw, void *user)
@@ -22,11 +22,12 @@ static void count_draw(const gtx_frame_draw *draw, void *user)
     d->lit += technique == TECHNIQUE_LOD_LIT;
     d->mapped += technique == TECHNIQUE_LOD || technique == TECHNIQUE_LOD_FRONT;
     d->fields += draw->vertices != GTX_BUFFER_LOD_VERTICES;
+    d->backs += draw->cull != GTX_CULL_BACK;
 }
 
 static drawn draws_of(const gtx_model *model, const gtx_view *view)
 {
-    drawn d = {0, 0, 0};
+    drawn d = {0, 0, 0, 0};
     gtx_planner *planner = NULL;
     gtx_frame frame;
     gtx_error error = {0};
@@ -111,6 +112,33 @@ static void colors_are_looked_up(void **state)
 
 /* A level within 1.7 texels is drawn where the view allows a hundredth of its error; one that may
  * be farther away is not. */
+/* A sphere without a face: from behind it no back is drawn, and nothing is missing; from before it
+ * and from within they are. */
+static void backs_are_left_out_where_none_shows(void **state)
+{
+    STAGE_OR_SKIP(state);
+    for (int i = 0; i < 6; ++i) {
+        subject shown = open_sphere(s, i & 1 ? LOD_PLAIN : LOD_COLORED, GTX_PATCH_TWO_SIDED);
+        gtx_camera camera = camera_around(shown.asset);
+        camera.target[0] = camera.target[1] = camera.target[2] = 0;
+        camera.azimuth = i / 2 == 1 ? 10 : 190;
+        camera.elevation = i / 2 == 1 ? 5 : -5;
+        camera.distance = i / 2 == 2 ? 0.5f : camera.distance;
+        gtx_view view = view_of(&camera);
+        view.level = 1;
+        view.method = GTX_METHOD_LOD;
+        assert_int_equal(draws_of(shown.model, &view).backs > 0, i / 2 > 0);
+        draw(s, &view, GTX_METHOD_CAST, &shown.instance, 1, &first);
+        draw(s, &view, GTX_METHOD_LOD, &shown.instance, 1, &second);
+        const difference d = compare(&first, &second);
+        if (i / 2 == 0) {
+            assert_true(d.both > 5000 && d.either - d.both < 200);
+            assert_true(d.mean < 1);
+        }
+        subject_close(s, &shown);
+    }
+}
+
 static void exact_levels_are_drawn_however_near(void **state)
 {
     STAGE_OR_SKIP(state);
@@ -140,6 +168,7 @@ int main(void)
         cmocka_unit_test(light_is_what_rays_find),
         cmocka_unit_test(own_mains_find_normals),
         cmocka_unit_test(colors_are_looked_up),
+        cmocka_unit_test(backs_are_left_out_where_none_shows),
         cmocka_unit_test(exact_levels_are_drawn_however_near),
     };
     return cmocka_run_group_tests(tests, open_stage, stage_close);
