@@ -48,6 +48,12 @@ typedef struct gtx_lod_level {
 /* Meshes with more, as of leaves or dirty scans, are seldom seen from behind all of them. */
 enum { GTX_MAX_OPENINGS = 64 };
 
+typedef struct gtx_lod_opening {
+    double out[3], middle[3]; /* the way out, unit, and the middle of the rim */
+    double before;            /* how far before that the rim begins, along the way out */
+    double steep;             /* the rim's extent along that way over its diameter */
+} gtx_lod_opening;
+
 /* All levels share one buffer of vertices and one of indices, the finest first. */
 typedef struct gtx_lod_meshes {
     uint32_t level_count, patch_count;
@@ -58,10 +64,8 @@ typedef struct gtx_lod_meshes {
     bool *edited;             /* a patch each: its height field has changed, and it must be cast */
     uint32_t edited_count;
     float low[3], high[3];    /* bounds in object space */
-    /* With its openings closed the finest level bounds a volume: where they open to, unit, and how
-     * far that way they begin. */
-    bool solid;
-    float openings[GTX_MAX_OPENINGS][4];
+    bool solid;               /* with its openings closed the finest level bounds a volume */
+    gtx_lod_opening openings[GTX_MAX_OPENINGS];
     uint32_t opening_count;
     /* Patches that share a vertex of the finest level with patch i:
      * neighbours[first_neighbour[i]]..neighbours[first_neighbour[i + 1] - 1]. */

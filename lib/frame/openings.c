@@ -2,7 +2,9 @@
  * them, what it sees are front faces, and backs need not be drawn.
  *
  * The mesh and a cap on each opening bound a volume. A ray that comes from outside enters before it
- * leaves: through a front face, or through a cap that faces it. */
+ * leaves: through a front face, or through a cap that faces it. None does that to an eye behind all
+ * of the rim, as long as the eye's way to it is steeper than the rim itself: else a ray may come in
+ * where the rim is low, and meet the back of what stands across. */
 #include "frame/frustum.h"
 
 #include "base/alloc.h"
@@ -25,6 +27,12 @@ typedef struct search {
     uint32_t of[GTX_MAX_OPENINGS], count; /* the first vertices of their rims */
     bool failed;
 } search;
+
+/* Of a rim, along the way out and across it. */
+typedef struct rim_extent {
+    double out[3], sum[3], least, most, around;
+    uint32_t count;
+} rim_extent;
 
 static uint32_t first_of(uint32_t *leads, uint32_t v)
 {
@@ -147,26 +155,56 @@ static bool is_sound(search *s)
     return !s->failed;
 }
 
-/* Which way they open, and where they begin. */
-static void store(const search *s, gtx_lod_meshes *lods)
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* Calls with each vertex of an opening's rim, less `from`. */
+static void each_place(const search *s, uint32_t opening, const double from[3],
+                       void (*call)(rim_extent *e, const double at[3]), rim_extent *e)
 {
     const gtx_lod_mesh *m = s->source;
-    for (uint32_t i = 0; i < s->count; ++i) {
-        const double *out = s->out[i];
-        const double length = sqrt(out[0] * out[0] + out[1] * out[1] + out[2] * out[2]);
-        double least = INFINITY;
-        for (uint32_t v = 0; v < m->vertex_count; ++v) {
-            if (first_of(s->rim, v) != s->of[i])
-                continue;
-            double at = 0;
-            for (int k = 0; k < 3; ++k)
-                at += out[k] * ((double)m->origin[k] + (double)m->step *
-                                                       m->positions[3 * (size_t)v + k]);
-            least = fmin(least, at);
-        }
+    for (uint32_t v = 0; v < m->vertex_count; ++v) {
+        if (first_of(s->rim, v) != s->of[opening])
+            continue;
+        double at[3];
         for (int k = 0; k < 3; ++k)
-            lods->openings[i][k] = (float)(out[k] / length);
-        lods->openings[i][3] = (float)(least / length);
+            at[k] = (double)m->origin[k] +
+                    (double)m->step * m->positions[3 * (size_t)v + (size_t)k] - from[k];
+        call(e, at);
+    }
+}
+
+static void add_place(rim_extent *e, const double at[3])
+{
+    for (int k = 0; k < 3; ++k)
+        e->sum[k] += at[k];
+    ++e->count;
+}
+
+static void add_extent(rim_extent *e, const double at[3])
+{
+    const double height = dot(e->out, at);
+    e->least = fmin(e->least, height);
+    e->most = fmax(e->most, height);
+    e->around += sqrt(fmax(dot(at, at) - height * height, 0));
+}
+
+static void store(const search *s, gtx_lod_meshes *lods)
+{
+    for (uint32_t i = 0; i < s->count; ++i) {
+        gtx_lod_opening *o = &lods->openings[i];
+        const double length = sqrt(dot(s->out[i], s->out[i]));
+        rim_extent e = {.least = INFINITY, .most = -INFINITY};
+        each_place(s, i, (double[3]){0}, add_place, &e);
+        for (int k = 0; k < 3; ++k) {
+            o->out[k] = e.out[k] = s->out[i][k] / length;
+            o->middle[k] = e.sum[k] / e.count;
+        }
+        each_place(s, i, o->middle, add_extent, &e);
+        o->before = -e.least;
+        o->steep = e.count * (e.most - e.least) / (2 * e.around);
     }
     lods->opening_count = s->count;
     lods->solid = true;
@@ -202,12 +240,12 @@ bool gtx_lod_hides_backs(const gtx_lod_meshes *lods, uint32_t level, const gtx_f
         least += fmin(near[k] * lods->low[k], near[k] * lods->high[k]);
     bool hidden = lods->solid && !f->two && least > 0;
     for (uint32_t i = 0; i < lods->opening_count; ++i) {
-        const float *o = lods->openings[i];
-        const double begins = (double)o[3] - (double)lods->levels[level].error;
-        double at = -f->eye[3] * begins;
+        const gtx_lod_opening *o = &lods->openings[i];
+        double way[3];        /* from the eye */
         for (int k = 0; k < 3; ++k)
-            at += f->eye[k] * o[k];
-        hidden = hidden && at < 0;
+            way[k] = f->eye[3] * o->middle[k] - f->eye[k];
+        const double begins = f->eye[3] * (o->before + (double)lods->levels[level].error);
+        hidden = hidden && dot(way, o->out) - begins > o->steep * sqrt(dot(way, way));
     }
     return hidden;
 }

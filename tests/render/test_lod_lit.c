@@ -110,8 +110,6 @@ static void colors_are_looked_up(void **state)
     }
 }
 
-/* A level within 1.7 texels is drawn where the view allows a hundredth of its error; one that may
- * be farther away is not. */
 /* A sphere without a face: from behind it no back is drawn, and nothing is missing; from before it
  * and from within they are. */
 static void backs_are_left_out_where_none_shows(void **state)
@@ -139,6 +137,8 @@ static void backs_are_left_out_where_none_shows(void **state)
     }
 }
 
+/* A level within 1.7 texels is drawn where the view allows a hundredth of its error; one that may
+ * be farther away is not. */
 static void exact_levels_are_drawn_however_near(void **state)
 {
     STAGE_OR_SKIP(state);
