@@ -101,10 +101,9 @@ Vector<Chart> whole_charts(Vector<Region> regions, const Vector<Frame> &frames,
     return out;
 }
 
-/* Charts, splitting what folds, from the first `count` of them; of layers, along which
- * directions. */
-void make_charts(Surface surface, const ChartOptions &options, uint32_t count,
-                 Vector<Vec3d> directions, Task &task, Partition &out)
+/* Charts, splitting what folds, from the first `count` of them. */
+void make_charts(Surface surface, const ChartOptions &options, uint32_t count, Task &task,
+                 Partition &out)
 {
     const bool layers = out.method == PartitionMethod::LAYERS;
     const bool cut = layers || out.method == PartitionMethod::CUTS;
@@ -114,7 +113,8 @@ void make_charts(Surface surface, const ChartOptions &options, uint32_t count,
     report_edges(surface, out);
 
     Bounds bounds = {INFINITY, cut_pitch(surface, wanted, options), true};
-    bounds.directions = std::move(directions);
+    if (layers) /* of the normals that peeling has left */
+        bounds.directions = peel_directions(surface);
     const auto split = cut ? split_for_count : split_for_length;
     Vector<Frame> frames = split(surface, options, regions, bounds, task);
     out.pitch = bounds.pitch;
@@ -217,18 +217,15 @@ static Partition partition_by(PartitionMethod method, const Mesh &mesh,
         out.mesh = std::move(cut.mesh);
         out.source = std::move(cut.source);
         out.initial_chart = std::move(cut.label);
-        make_charts(make_surface(out.mesh, pitch, task), options, count, {}, task, out);
+        make_charts(make_surface(out.mesh, pitch, task), options, count, task, out);
         return out;
     }
-    Vector<Vec3d> directions;
-    if (method == PartitionMethod::LAYERS)
-        directions = peel_directions(surface);
     out.initial_chart =
         method == PartitionMethod::VSA ? cluster(surface, surface.whole, count, task)
         : method == PartitionMethod::LAYERS
-            ? peel(surface, directions, pitch, count, task)
+            ? peel(surface, peel_directions(surface), pitch, count, task)
             : agglomerate(surface, count, task);
-    make_charts(std::move(surface), options, count, std::move(directions), task, out);
+    make_charts(std::move(surface), options, count, task, out);
     return out;
 }
 
