@@ -36,9 +36,9 @@ inline std::string text_of(const char *text) { return text ? text : ""; }
 Models read_models(const ModelInput &first, const char *const *more, uint32_t more_count,
                    const TextureFiles &textures, Task &task);
 
+/* What values of height grids, and where they lie, are taken for. */
 struct GridSense {
-    bool local_metres = false;   /* those in degrees become metres, true at the latitude of the first
-                                    one's middle */
+    bool local_metres = false;   /* degrees become metres, true at the first one's middle */
     bool depths = false;         /* values are depths, positive downwards */
 };
 
