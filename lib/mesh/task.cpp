@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <cstring>
 #include <mutex>
 #include <new>
+#include <system_error>
 
 namespace gtx {
 
@@ -175,7 +177,7 @@ public:
         : task_(task), count_(count), failed_at_(count), body_(body)
     {
     }
-    ~Crew() { stop(); }
+    ~Crew() { join(); }
     void hire(size_t helpers);
     /* What the caller does; report(done) is its chance to stop. */
     void work(const std::function<void(size_t)> &report);
@@ -183,18 +185,18 @@ public:
 
 private:
     bool run_one();
-    void stop();
-    bool is_over() { return task_.workers_.is_over(call_, std::chrono::duration<double>(ASK)); }
+    void join();
 
     Task &task_;
     const size_t count_;
-    size_t failed_at_;
+    size_t failed_at_, gone_ = 0; /* helpers that have nothing left to do */
     const std::function<void(size_t)> &body_;
     std::atomic<size_t> next_{0}, done_{0};
     std::atomic<bool> stop_{false};
     std::mutex mutex_;
+    std::condition_variable one_went_;
     std::exception_ptr failure_;
-    Workers::Call call_;
+    std::vector<std::thread> helpers_;
 };
 
 bool Task::Crew::run_one()
@@ -216,37 +218,50 @@ bool Task::Crew::run_one()
     return true;
 }
 
-/* A helper begins as a thread of its own: with nothing to tell yet. */
 void Task::Crew::hire(size_t helpers)
 {
-    if (!helpers)
-        return;
-    call_.run = [this, lane = Limits::lane] {
-        const Scope scope(task_);
-        Limits::lane = lane;
-        passed = worked = 0;
-        while (run_one()) {}
-    };
-    task_.workers_.call(call_, helpers);
+    helpers_.reserve(helpers);
+    for (size_t i = 0; i < helpers; ++i) {
+        try {
+            helpers_.emplace_back([this, lane = Limits::lane] {
+                Scope scope(task_);
+                Limits::lane = lane;
+                while (run_one()) {}
+                std::lock_guard<std::mutex> lock(mutex_);
+                ++gone_;
+                one_went_.notify_one();
+            });
+        } catch (const std::system_error &) { /* no more threads: fewer do the same */
+            break;
+        }
+    }
 }
 
 void Task::Crew::work(const std::function<void(size_t)> &report)
 {
     while (run_one() && !stop_)
         report(done_);
-    while (!is_over())
+    const std::chrono::duration<double> wait(ASK);
+    std::unique_lock<std::mutex> lock(mutex_);
+    while (!one_went_.wait_for(lock, wait, [this] { return gone_ == helpers_.size(); })) {
+        lock.unlock();
         report(done_);
+        lock.lock();
+    }
 }
 
 /* Early where work() has thrown. */
-void Task::Crew::stop()
+void Task::Crew::join()
 {
     stop_ = true;
-    while (!is_over()) {}
+    for (std::thread &helper : helpers_)
+        helper.join();
+    helpers_.clear();
 }
 
 void Task::Crew::rethrow()
 {
+    join();
     if (failure_)
         std::rethrow_exception(failure_);
 }

@@ -4,7 +4,6 @@
 
 #include "base/warnings.h"
 #include "mesh/memory.hpp"
-#include "mesh/workers.hpp"
 
 #include <geotex/geotex.h>
 
@@ -153,7 +152,6 @@ private:
     float reported_ = 0;
     std::thread::id caller_;
     std::atomic<bool> cancelled_{false};
-    Workers workers_;
 };
 
 } // namespace gtx
