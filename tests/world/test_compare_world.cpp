@@ -8,10 +8,7 @@
 
 #include <geotex/cook.h>
 
-#include <cmath>
 #include <cstring>
-
-#include <unistd.h>
 
 using namespace gtx;
 
