@@ -140,7 +140,9 @@ static void draw_side(const gtx_draw_call *call, const run *r, uint32_t level,
 static bool hides_backs(const gtx_draw_call *call, const run *r, uint32_t level)
 {
     const gtx_lod_meshes *lods = &r->model->lods;
-    bool hidden = !lods->edited_count && (!gtx_is_own(call) || call->planner->own_vertices);
+    const bool solid = !gtx_is_own(call) || call->planner->own_vertices ||
+                       call->view->flags & GTX_VIEW_SHADING_SOLID;
+    bool hidden = !lods->edited_count && solid;
     for (uint32_t i = 0; i < r->count && hidden; ++i) {
         const gtx_frustum f =
             gtx_frustum_of(call, r->model, &call->planner->instances[r->first + i]);
