@@ -33,10 +33,11 @@ gtx_technique gtx_lod_technique(const gtx_draw_call *call, const gtx_model *mode
                                 bool front)
 {
     const bool lit = gtx_is_lit(call, model, level);
+    if (gtx_is_own(call) && lit)
+        return front && call->planner->own_vertices ? TECHNIQUE_OWN_LOD_LIT
+                                                    : TECHNIQUE_OWN_LOD_NORMALS;
     if (gtx_is_own(call))
-        return !lit                                       ? TECHNIQUE_OWN_LOD
-               : front && call->planner->own_vertices ? TECHNIQUE_OWN_LOD_LIT
-                                                      : TECHNIQUE_OWN_LOD_NORMALS;
+        return TECHNIQUE_OWN_LOD;
     return lit ? TECHNIQUE_LOD_LIT : front ? TECHNIQUE_LOD_FRONT : TECHNIQUE_LOD;
 }
 
