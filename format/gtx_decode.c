@@ -118,7 +118,7 @@ static unsigned check_header(struct file *f)
         return 100;
     if (f->size < HEADER)
         return 118;
-    if (u16(h + 12) != 0 || u16(h + 14) != 6)
+    if (u16(h + 12) != 0 || u16(h + 14) != 7)
         return 101;
     if (u32(h + 16) != HEADER)
         return 102;
@@ -180,15 +180,18 @@ static unsigned check_header_hash(struct file *f)
 
 /* ---- 1.2 and 2: table ---- */
 
-/* In file order; LODM and the images from COLR to EMIT may be absent. META is last. */
+/* In file order, after the coarsest LODM, if there is one; the images from COLR to EMIT may be
+ * absent. META is last. */
 enum { KNOWN = 8 };
 static const char *const types[KNOWN] = {"PTCH", "LODM", "COLR", "MATL",
                                          "EMIT", "HGHT", "TRIM", "NRML"};
 
 static int is_type(const struct section *s, const char *type) { return !strcmp(s->type, type); }
 
-static int order_of(const struct section *s)
+static int order_of(const struct file *f, const struct section *s)
 {
+    if (s == f->section && is_type(s, "LODM"))
+        return 0;
     for (int i = 0; i < KNOWN; ++i)
         if (is_type(s, types[i]))
             return 16 * i + 8 - (int)s->level;
@@ -266,7 +269,7 @@ static unsigned check_entry(struct file *f, uint32_t index, uint64_t *end)
 
     if (s->level > 7)
         return 203;
-    int order = order_of(s), known = order != UNKNOWN;
+    int order = order_of(f, s), known = order != UNKNOWN;
     if (!known && s->flags & 1)
         return 201;
     if (s->flags != (known && is_needed(s->type) ? 1 : 0))
@@ -274,9 +277,12 @@ static unsigned check_entry(struct file *f, uint32_t index, uint64_t *end)
     if (!known && (s->level || s->format))
         return s->level ? 203 : 204;
     for (uint32_t i = 0; i < index; ++i)
-        if (order_of(&f->section[i]) > order ||
+        if (order_of(f, &f->section[i]) > order ||
             (!memcmp(f->section[i].type, s->type, 4) && f->section[i].level == s->level))
             return 200;
+    const struct section *first = f->section;
+    if (index && is_type(s, "LODM") && (!is_type(first, "LODM") || first->level <= s->level))
+        return 200;
     unsigned rule = known ? check_known(f, s) : 0;
     if (rule)
         return rule;
@@ -1152,22 +1158,26 @@ static unsigned check_meta(const struct section *meta)
 
 static unsigned decode_content(struct file *f, byte *taken)
 {
+    struct section *patches = &f->section[is_type(f->section, "LODM")];
+    unsigned rule = decode_section(f, patches);
+    if (!rule)
+        rule = check_patches(f, patches->bytes, taken);
+    if (rule)
+        return rule;
     for (uint32_t n = 0; n < 8 * f->section_count; ++n) { /* level 0 of all sections first */
         struct section *s = &f->section[n % f->section_count];
-        if (order_of(s) == UNKNOWN || s->level != n / f->section_count)
+        if (order_of(f, s) == UNKNOWN || s->level != n / f->section_count || s == patches)
             continue;
-        unsigned rule = decode_section(f, s);
-        if (!rule && is_type(s, "PTCH"))
-            rule = check_patches(f, s->bytes, taken);
+        rule = decode_section(f, s);
         if (!rule && is_type(s, "LODM"))
-            rule = check_lod(f, s, s->level ? s + 1 : NULL,
-                             find(f, "PTCH")->bytes);
+            rule = check_lod(f, s, s->level ? s == f->section ? s + 2 : s + 1 : NULL,
+                             patches->bytes);
         if (!rule && is_type(s, "META"))
             rule = check_meta(s);
         if (rule)
             return rule;
     }
-    return check_maps(f, find(f, "PTCH")->bytes, find(f, "HGHT")->bytes, taken);
+    return check_maps(f, patches->bytes, find(f, "HGHT")->bytes, taken);
 }
 
 /* Returns 0, or the rule that is broken. `f` is to be freed with release in either case. */

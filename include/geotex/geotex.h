@@ -240,10 +240,11 @@ typedef struct gtx_prefix {
 /* Opens the first `size` bytes of a file, such as an unfinished download. *out is an asset of what
  * has arrived, or NULL with GTX_OK when nothing can be shown yet: wait for prefix->needed bytes.
  *
- * The asset of an incomplete file has all patches; the LOD meshes that have arrived, the finest of
- * them as level 0; colours, materials and emission if they have arrived; and normals taken from its
- * finest LOD mesh. Its maps have fewer texels than the file's. It has no heights: rays miss it,
- * only GTX_METHOD_AUTO and GTX_METHOD_LOD draw it, and its models cannot be edited
+ * The asset of an incomplete file has all patches, or before these have arrived others in their
+ * place, laid around triangles of the coarsest LOD mesh; the LOD meshes that have arrived, the
+ * finest of them as level 0; colours, materials and emission if they have arrived; and normals
+ * taken from its finest LOD mesh. Its maps have fewer texels than the file's. It has no heights:
+ * rays miss it, only GTX_METHOD_AUTO and GTX_METHOD_LOD draw it, and its models cannot be edited
  * (gtx_model_edit). In all else it is an ordinary asset. A complete file gives the asset of
  * gtx_open_memory. What has arrived is checked by the format's rules.
  * Errors: as gtx_open_memory, but never TRUNCATED. */

@@ -86,18 +86,22 @@ typedef struct table_walk {
     uint32_t seen[GTX_SECTION_META + 1];
 } table_walk;
 
-/* The place of a section in the file's order; levels go from the smallest image to the largest. */
-static uint32_t rank_of(const gtx_section *section)
+/* The place of a section in the file's order: levels go from the smallest image to the largest, and
+ * the coarsest LOD mesh is before the patches. */
+static uint32_t rank_of(const gtx_section *section, uint32_t index)
 {
-    return (uint32_t)section->kind << 8 | (0xFF - section->level);
+    const bool coarsest = section->kind == GTX_SECTION_LOD && index == 0;
+    return coarsest ? 1 : (uint32_t)section->kind << 8 | (0xFF - section->level);
 }
 
 static void check_order(table_walk *walk, uint32_t index, uint64_t at)
 {
     const gtx_section *sections = walk->layout->sections, *section = &sections[index];
-    uint32_t rank = rank_of(section);
+    uint32_t rank = rank_of(section, index);
     bool unknown = section->kind == GTX_SECTION_UNKNOWN;
     bool wrong = rank < walk->last_rank || (rank == walk->last_rank && !unknown);
+    if (section->kind == GTX_SECTION_LOD && index > 0)
+        wrong = wrong || sections->kind != section->kind || sections->level <= section->level;
     for (uint32_t i = 0; unknown && i < index; ++i)
         wrong = wrong || !memcmp(sections[i].type, section->type, 4);
     if (wrong)

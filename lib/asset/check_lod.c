@@ -159,6 +159,6 @@ void gtx_check_lod(gtx_check *check, const gtx_asset *asset, uint32_t level, uin
                   (double)w.lod.error, (double)finer.error);
     check_first(&w);
     check_indices(&w);
-    if (check->broken == before && !(w.lod.flags & GTX_LOD_FAR))
+    if (check->broken == before && asset->patches && !(w.lod.flags & GTX_LOD_FAR))
         check_places(&w);
 }

@@ -67,6 +67,11 @@ void gtx_decoding_plan(gtx_decoding *out, const gtx_section *sections, uint32_t 
         out->parts[out->part_count++] = (gtx_part){.index = i, .section = &sections[i]};
         out->zstd = out->zstd || sections[i].scheme == GTX_SCHEME_ZSTD;
     }
+    if (out->part_count > 1 && out->parts[1].section->kind == GTX_SECTION_PATCHES) {
+        const gtx_part coarsest = out->parts[0];
+        out->parts[0] = out->parts[1];
+        out->parts[1] = coarsest;
+    }
     out->size = place(out, info, NULL);
 }
 

@@ -21,7 +21,7 @@ typedef struct gtx_part {
 /* The parts of a file, and one block of memory for decoding them. */
 typedef struct gtx_decoding {
     const gtx_jobs *jobs;         /* or NULL */
-    gtx_part parts[GTX_MAX_KNOWN_SECTIONS]; /* patches first, then in the order of the file */
+    gtx_part parts[GTX_MAX_KNOWN_SECTIONS]; /* patches first, if any, then as in the file */
     uint32_t part_count;
     bool hashed, zstd;            /* hashes are computed; some part is compressed */
     uint64_t size;                /* of the block */
@@ -39,7 +39,7 @@ void gtx_decoding_plan(gtx_decoding *out, const gtx_section *sections, uint32_t 
 bool gtx_decoding_begin(gtx_decoding *decoding, gtx_asset *asset, const uint8_t *data);
 void gtx_decoding_end(gtx_decoding *decoding, const gtx_allocator *allocator);
 
-/* Decodes the patches. */
+/* Decodes the patches; of a beginning that has none, what is there instead. */
 void gtx_decode_patches(gtx_decoding *decoding);
 
 /* Decodes all other parts, and finds out which patches and LOD meshes are valid, so that checks can

@@ -25,7 +25,8 @@ typedef struct beginning {
     uint32_t piece_count;
     bool normals;                              /* and heights are there, too */
     gtx_layout layout;
-    gtx_section parts[GTX_MAX_KNOWN_SECTIONS]; /* to decode: patches, LOD meshes, images */
+    gtx_section parts[GTX_MAX_KNOWN_SECTIONS]; /* to decode: patches or the coarsest LOD mesh
+                                                  alone, LOD meshes, images */
     uint32_t part_count;
     int images[GTX_SECTION_META + 1];          /* the finest level of each kind, or -1 */
     uint32_t lods, missing;                    /* LOD meshes that are there, and that are not */
@@ -41,15 +42,15 @@ static uint64_t end_of(const gtx_section *section)
     return section->offset + section->stored_size;
 }
 
-/* How many bytes show more than `size`: to the end of the next section of those before heights; the
- * whole file where there is none, or where patches alone are there. */
+/* How many bytes show more than `size`: to the end of the next section of those before heights, of
+ * which patches show nothing alone; the whole file where there is none. */
 static uint64_t needed_of(const gtx_layout *layout, uint64_t size)
 {
-    for (uint32_t i = 1; i < layout->section_count; ++i) {
+    for (uint32_t i = 0; i < layout->section_count; ++i) {
         const gtx_section *section = &layout->sections[i];
         if (section->kind >= GTX_SECTION_HEIGHT || layout->info.lod_levels == 0)
             break;
-        if (end_of(section) > size)
+        if (end_of(section) > size && section->kind != GTX_SECTION_PATCHES)
             return end_of(section);
     }
     return layout->info.file_size;
@@ -71,13 +72,15 @@ static const uint8_t *bytes_of(const beginning *b, const gtx_section *section)
     return NULL;
 }
 
-/* Normals are coded against heights, and coarse ones against finer ones: all of them, or none. */
+/* Normals are coded against patches and heights, and coarse ones against finer ones: all of them, or
+ * none. */
 static bool has_normals(const beginning *b)
 {
     bool all = true;
     for (uint32_t i = 0; i < b->layout.section_count; ++i) {
         const gtx_section *section = &b->layout.sections[i];
-        const bool needed = section->kind == GTX_SECTION_HEIGHT ||
+        const bool needed = section->kind == GTX_SECTION_PATCHES ||
+                            section->kind == GTX_SECTION_HEIGHT ||
                             section->kind == GTX_SECTION_NORMAL;
         all = all && (!needed || bytes_of(b, section));
     }
@@ -182,10 +185,20 @@ static bool is_allowed(beginning *b, uint64_t memory)
     return true;
 }
 
-/* Of all parts as they come out. */
+static bool has_patches(const beginning *b)
+{
+    for (uint32_t i = 0; i < b->part_count; ++i)
+        if (b->parts[i].kind == GTX_SECTION_PATCHES)
+            return true;
+    return false;
+}
+
+/* Of all parts as they come out, and of patches in any case. */
 static uint64_t source_bytes(const beginning *b)
 {
     uint64_t bytes = sizeof(gtx_asset);
+    if (!has_patches(b))
+        bytes += sizeof(gtx_patch) * (uint64_t)b->layout.info.patch_count;
     for (uint32_t i = 0; i < b->part_count; ++i)
         bytes += b->parts[i].size;
     return bytes;
@@ -208,10 +221,15 @@ static bool holds(beginning *b, const gtx_part *part)
 static void decode(beginning *b)
 {
     gtx_decoding *d = &b->decoding;
+    const gtx_section *first = d->parts[0].section;
     gtx_decode_patches(d);
     if (!holds(b, &d->parts[0]))
         return;
-    gtx_check_patches(&b->check, b->source, b->parts[0].offset, &b->occupancy);
+    if (first->kind == GTX_SECTION_LOD) {
+        gtx_check_lod(&b->check, b->source, first->level, first->offset);
+        return;
+    }
+    gtx_check_patches(&b->check, b->source, first->offset, &b->occupancy);
     gtx_occupancy_free(&b->occupancy, &b->options->allocator);
     if (gtx_check_over(&b->check))
         return;
@@ -225,6 +243,20 @@ static void decode(beginning *b)
         if (gtx_check_over(&b->check))
             return;
     }
+}
+
+/* Patches for an LOD mesh that came without. False where they cannot be had: then the file's own
+ * are waited for. */
+static bool sketch(beginning *b)
+{
+    gtx_check quiet = {0};
+    if (!gtx_sketch_patches(b->source)) {
+        gtx_check_fail(&b->check, GTX_ERROR_MEMORY, "out of memory for the beginning of a file");
+        return false;
+    }
+    gtx_check_patches(&quiet, b->source, 0, &b->occupancy);
+    gtx_occupancy_free(&b->occupancy, &b->options->allocator);
+    return !gtx_check_over(&quiet);
 }
 
 /* The preview's, and what making it takes. */
@@ -278,6 +310,8 @@ static uint64_t most_triangles(const beginning *b)
 
 static gtx_asset *read_parts(beginning *b)
 {
+    if (!has_patches(b))
+        b->layout.info = gtx_sketch_info(&b->layout.info);
     b->shift = b->normals ? 0 : gtx_preview_shift(&b->layout.info, TEXELS * most_triangles(b));
     choose_images(b);
     shape_preview(b, b->shift);
@@ -298,7 +332,7 @@ static gtx_asset *read_parts(beginning *b)
         decode(b);
     }
     gtx_decoding_end(&b->decoding, &b->options->allocator);
-    if (!gtx_check_over(&b->check))
+    if (!gtx_check_over(&b->check) && (has_patches(b) || sketch(b)))
         out = preview(b);
     gtx_close(b->source);
     return out;

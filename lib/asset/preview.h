@@ -25,4 +25,12 @@ uint64_t gtx_preview_scratch(const gtx_info *preview, uint32_t vertices);
 gtx_asset *gtx_preview_new(const gtx_asset *source, const gtx_info *preview, uint32_t shift,
                            const int levels[GTX_SECTION_META + 1]);
 
+/* sketch.c: what becomes of the info where no patches are there yet: a page that has room for small
+ * rectangles. */
+gtx_info gtx_sketch_info(const gtx_info *info);
+
+/* Gives an asset of such an info, which has none, patches that LOD mesh 0 lies on. False when
+ * memory is out. */
+bool gtx_sketch_patches(gtx_asset *asset);
+
 #endif

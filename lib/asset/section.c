@@ -97,6 +97,11 @@ uint32_t gtx_asset_sections(const gtx_asset *asset, gtx_section out[GTX_MAX_KNOW
             section->hash = gtx_hash_section(asset, section, data);
         }
     }
+    if (asset->lod[0]) {
+        const gtx_section patches = out[0];
+        out[0] = out[1]; /* the coarsest LOD mesh, which can be shown alone */
+        out[1] = patches;
+    }
     return count;
 }
 

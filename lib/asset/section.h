@@ -7,12 +7,12 @@
 #include <stdbool.h>
 
 #define GTX_FORMAT_MAJOR 0u
-#define GTX_FORMAT_MINOR 6u
+#define GTX_FORMAT_MINOR 7u
 #define GTX_HEADER_SIZE 192u
 #define GTX_ENTRY_SIZE 64u
 #define GTX_META_LIMIT (1u << 20)
 
-/* In file order. */
+/* In file order, but that the coarsest LOD mesh comes before the patches. */
 typedef enum gtx_section_kind {
     GTX_SECTION_PATCHES,
     GTX_SECTION_LOD,

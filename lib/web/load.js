@@ -150,7 +150,10 @@ export async function* modelsOf(geotex, ask, {onProgress = () => {}, wanted = ()
       if (gathered.length < needed)
         continue;
       const {model, ...told} = await geotex.load(gathered.all, {prefix: true, pieces: held[1] && held});
-      size = told.fileBytes;
+      if (size !== told.fileBytes) {
+        size = told.fileBytes;
+        tell();
+      }
       whole = told.needed ? 0 : gathered.length;
       needed = told.needed;
       if (!model)

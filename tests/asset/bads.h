@@ -24,7 +24,7 @@ enum { SMALL = ENTRY + 64, LARGE = ENTRY + 2 * 64 };
 enum { COLR = ENTRY + 4 * 64, MATL = ENTRY + 8 * 64, EMIT = ENTRY + 9 * 64 };
 
 /* The two levels in `lod`; the entries of its finer and of the coarsest in `zstd-lod`. */
-enum { COARSE = 704, FINE = 832, LODM = ENTRY + 2 * 64, ZSTD_SHEL = ENTRY + 64 };
+enum { COARSE = 576, FINE = 832, LODM = ENTRY + 2 * 64, ZSTD_SHEL = ENTRY };
 /* Of the coarser level in `normals`. */
 enum { NORMAL_ERROR = COARSE + 96 };
 
@@ -120,6 +120,21 @@ static inline void rename_large_level(bytes *file)
 static inline void rename_fine_lod(bytes *file)
 {
     forget(file, LODM);
+}
+
+/* As files of 0.6 were. */
+static inline void patches_before_lods(bytes *file)
+{
+    enum { PTCH = ENTRY + 64, COARSE_SIZE = 128, PTCH_SIZE = 128 };
+    uint8_t entry[64], section[COARSE_SIZE], *first = file->data + COARSE;
+    memcpy(entry, file->data + ENTRY, 64);
+    memcpy(file->data + ENTRY, file->data + PTCH, 64);
+    memcpy(file->data + PTCH, entry, 64);
+    gtx_store_u64(file->data + ENTRY + 16, COARSE);
+    gtx_store_u64(file->data + PTCH + 16, COARSE + PTCH_SIZE);
+    memcpy(section, first, COARSE_SIZE);
+    memcpy(first, first + COARSE_SIZE, PTCH_SIZE);
+    memcpy(first + PTCH_SIZE, section, COARSE_SIZE);
 }
 
 /* Colour and material have one size: only the names change place. */
@@ -247,6 +262,8 @@ static const bad variants[] = {
     {306, "patch-rectangle", "minimal", RECORD + 72, 2, 1, SECTIONS, RECORD + 68, NULL},
     {308, "patch-sphere", "minimal", RECORD + 92, 4, 0xBF800000, SECTIONS, RECORD + 92, NULL},
     {200, "section-order", "lod", LODM + 8, 4, 1, HEADER, LODM, NULL},
+    {200, "section-order", "lod", ENTRY + 8, 4, 0, HEADER, LODM, NULL},
+    {200, "section-order", "lod", 0, 0, 0, CONTENT, ENTRY + 64, patches_before_lods},
     {203, "section-level", "lod", LODM + 8, 4, 8, HEADER, LODM + 8, NULL},
     {209, "section-filter", "zstd-lod", ZSTD_SHEL + 44, 4, 1, HEADER, ZSTD_SHEL + 44, NULL},
     {214, "section-missing", "lod", 0, 0, 0, CONTENT, ENTRY, rename_fine_lod},

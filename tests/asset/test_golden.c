@@ -88,7 +88,7 @@ static void test_content(void **state)
         assert_int_equal(info.height_bits, g->bits);
         assert_int_equal(info.mip_count, g->mips);
         assert_int_equal(info.page_count, g->pages);
-        assert_int_equal(info.version_minor, 6);
+        assert_int_equal(info.version_minor, 7);
         assert_int_equal(info.has_color, (g->maps & COLOR) != 0);
         assert_int_equal(info.has_material, (g->maps & MATERIAL) != 0);
         assert_int_equal(info.has_emission, (g->maps & EMISSION) != 0);

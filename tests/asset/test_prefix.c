@@ -66,7 +66,7 @@ static void check_golden(const golden *g)
         assert_true(size == file.size ? !prefix.needed : prefix.needed > size);
         assert_in_range(prefix.needed, 0, file.size);
         assert_true(prefix.needed >= needed || size == file.size);
-        assert_int_equal(asset != NULL, size == file.size || (g->lods && size >= end_of(file, 1)));
+        assert_int_equal(asset != NULL, size == file.size || (g->lods && size >= end_of(file, 0)));
         if (asset)
             gtx_get_info(asset, &info);
         /* More is there exactly where it was said to be. */
@@ -129,6 +129,57 @@ static void test_content(void **state)
         assert_int_equal(heights[i], 0);
     gtx_close(part);
     gtx_close(whole);
+    free(file.data);
+}
+
+/* Before the file's patches come, those of the coarsest LOD mesh are boxes around its triangles. */
+static void test_sketch(void **state)
+{
+    (void)state;
+    bytes file = golden_encode(&every[0]);
+    gtx_asset *whole, *part;
+    gtx_prefix prefix;
+    gtx_lod_mesh coarsest, mesh;
+    assert_int_equal(gtx_open_memory(file.data, file.size, NULL, &whole, NULL), GTX_OK);
+    assert_int_equal(open_prefix(file, end_of(file, 0), NULL, &prefix, &part, NULL), GTX_OK);
+    assert_int_equal(prefix.needed, end_of(file, 2));
+    assert_int_equal(part->info.patch_count, whole->info.patch_count);
+    assert_int_equal(gtx_get_lod_mesh(whole, 2, &coarsest), GTX_OK);
+    assert_int_equal(gtx_get_lod_mesh(part, 0, &mesh), GTX_OK);
+    assert_int_equal(mesh.triangle_count, coarsest.triangle_count);
+    assert_memory_equal(mesh.normals, coarsest.normals, 2 * mesh.vertex_count);
+    for (uint32_t p = 0; p < part->info.patch_count; ++p) {
+        const gtx_patch *patch = &part->patches[p];
+        const gtx_patch_frame frame = gtx_patch_frame_of(patch, 8);
+        assert_true(patch->axis_z[2] > 0.99f && patch->extent_z < 0.5f); /* as golden ones lie */
+        for (uint32_t i = 3 * mesh.first[p]; i < 3 * mesh.first[p + 1]; ++i)
+            for (int axis = 0; axis < 2; ++axis) {
+                double at = frame.to_grid[axis][3];
+                for (int k = 0; k < 3; ++k)
+                    at += frame.to_grid[axis][k] *
+                          ((double)mesh.origin[k] +
+                           (double)mesh.step * mesh.positions[3 * mesh.indices[i] + (uint32_t)k]);
+                assert_true(at > -0.51 && at < patch->rect[2 + axis] - 0.49);
+            }
+    }
+    gtx_close(part);
+    gtx_close(whole);
+    free(file.data);
+}
+
+/* Boxes that floats cannot hold are none: the file's own patches are waited for. */
+static void test_far_sketch(void **state)
+{
+    (void)state;
+    bytes file = golden_encode(&every[0]);
+    const size_t mesh = gtx_load_u64(file.data + GTX_HEADER_SIZE + 16);
+    gtx_prefix prefix;
+    gtx_asset *part;
+    gtx_store_u32(file.data + mesh + 12, 0x7f000000); /* a step of 1.7e38 */
+    rehash_sections(file);
+    assert_int_equal(open_prefix(file, end_of(file, 0), NULL, &prefix, &part, NULL), GTX_OK);
+    assert_null(part);
+    assert_int_equal(prefix.needed, end_of(file, 2));
     free(file.data);
 }
 
@@ -198,11 +249,10 @@ static void test_pieces(void **state)
 }
 
 /* A wrong byte ends in an error, or in an asset that keeps the rules. */
-static void test_flips(void **state)
+static void flip_bytes(uint32_t entry)
 {
-    (void)state;
     bytes file = golden_encode(&every[0]);
-    const size_t size = end_of(file, 6);
+    const size_t size = end_of(file, entry);
     uint32_t refused = 0;
     for (size_t at = 0; at < size; ++at) {
         file.data[at] ^= 0x11;
@@ -223,6 +273,13 @@ static void test_flips(void **state)
     }
     assert_true(refused > size / 2);
     free(file.data);
+}
+
+static void test_flips(void **state)
+{
+    (void)state;
+    flip_bytes(0);
+    flip_bytes(6);
 }
 
 /* ---- memory ---- */
@@ -248,10 +305,8 @@ static void give(void *memory, size_t size, void *user)
     free(memory);
 }
 
-static void test_memory(void **state)
+static void open_with_little(bytes file, size_t size)
 {
-    (void)state;
-    bytes file = golden_encode(&every[0]);
     gtx_result result = GTX_ERROR_MEMORY;
     for (uint32_t calls = 0; result; ++calls) {
         scarce s = {.left = calls};
@@ -260,11 +315,19 @@ static void test_memory(void **state)
         gtx_prefix prefix;
         gtx_asset *asset;
         assert_in_range(calls, 0, 100);
-        result = open_prefix(file, end_of(file, 6), &desc, &prefix, &asset, NULL);
+        result = open_prefix(file, size, &desc, &prefix, &asset, NULL);
         assert_true(!result || result == GTX_ERROR_MEMORY);
         gtx_close(asset);
         assert_int_equal(s.bytes, 0);
     }
+}
+
+static void test_memory(void **state)
+{
+    (void)state;
+    bytes file = golden_encode(&every[0]);
+    open_with_little(file, end_of(file, 0));
+    open_with_little(file, end_of(file, 6));
     gtx_open_desc desc = {.limits.memory = 1000};
     gtx_prefix prefix;
     gtx_asset *asset;
@@ -281,6 +344,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_every_length), cmocka_unit_test(test_content),
+        cmocka_unit_test(test_sketch), cmocka_unit_test(test_far_sketch),
         cmocka_unit_test(test_pieces), cmocka_unit_test(test_flips), cmocka_unit_test(test_memory)};
     return cmocka_run_group_tests_name("prefix", tests, NULL, NULL);
 }

@@ -36,7 +36,7 @@ static void help_is_exit_0(void **state)
     expect(gtx("--help"), 0);
     expect(gtx("--version"), 0);
     expect_text("gtx 0.1.0");
-    expect_text("\nformat 0.6, cooker revision ");
+    expect_text("\nformat 0.7, cooker revision ");
     expect_text("\nzstd ");
     expect_text(", Draco 1.");
     for (size_t i = 0; i < sizeof verbs / sizeof *verbs; ++i) {
