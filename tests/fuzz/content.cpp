@@ -87,7 +87,7 @@ Bytes put_together(const Content &content)
     return out;
 }
 
-/* In file order; what may be absent has no level where it is. */
+/* In file order, but that the coarsest LODM is first; what may be absent has no level where it is. */
 static const struct Kind {
     const char *type;
     uint32_t format, texel, must;
@@ -156,6 +156,10 @@ void fit(Content &content)
     }
     std::stable_sort(content.sections.begin(), content.sections.end(),
                      [](const Section &a, const Section &b) { return order_of(a) < order_of(b); });
+    const auto coarsest = std::find_if(content.sections.begin(), content.sections.end(),
+                                       [](const Section &s) { return s.is("LODM"); });
+    if (coarsest != content.sections.end())
+        std::rotate(content.sections.begin(), coarsest, coarsest + 1);
 }
 
 } // namespace fuzz

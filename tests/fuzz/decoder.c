@@ -104,7 +104,7 @@ static void settle_sections(struct file *f, byte *data, int repair)
     unsigned rule = taken ? 0 : NO_MEMORY;
     for (uint32_t n = 0; !rule && n < 8 * f->section_count; ++n) {
         struct section *s = &f->section[n % f->section_count];
-        if (order_of(s) == UNKNOWN || s->level != n / f->section_count)
+        if (order_of(f, s) == UNKNOWN || s->level != n / f->section_count)
             continue;
         rule = decode_section(f, s);
         if (rule && rule != 210)
