@@ -1,6 +1,6 @@
 /* Opening the first bytes of a file as an asset of what has arrived, and again with more bytes. */
+#include "asset/arrival.h"
 #include "asset/preview.h"
-#include "asset/read.h"
 
 #include "asset/decode.h"
 #include "asset/header.h"
@@ -19,117 +19,14 @@ enum { TEXELS = 4, LIT_TEXELS = 1 };
 typedef struct beginning {
     gtx_check check;
     const gtx_read_options *options;
-    const uint8_t *data;
-    uint64_t size;
-    const gtx_file_part *pieces;
-    uint32_t piece_count;
-    bool normals;                              /* and heights are there, too */
     gtx_layout layout;
-    gtx_section parts[GTX_MAX_KNOWN_SECTIONS]; /* to decode: patches or the coarsest LOD mesh
-                                                  alone, LOD meshes, images */
-    uint32_t part_count;
-    int images[GTX_SECTION_META + 1];          /* the finest level of each kind, or -1 */
-    uint32_t lods, missing;                    /* LOD meshes that are there, and that are not */
+    gtx_arrival has;
     gtx_decoding decoding;
     gtx_asset *source;
     gtx_occupancy occupancy;
     uint32_t shift;
-    gtx_info info;                             /* of the preview */
+    gtx_info info;                /* of the preview */
 } beginning;
-
-static uint64_t end_of(const gtx_section *section)
-{
-    return section->offset + section->stored_size;
-}
-
-/* How many bytes show more than `size`: to the end of the next section of those before heights, of
- * which patches show nothing alone; the whole file where there is none. */
-static uint64_t needed_of(const gtx_layout *layout, uint64_t size)
-{
-    for (uint32_t i = 0; i < layout->section_count; ++i) {
-        const gtx_section *section = &layout->sections[i];
-        if (section->kind >= GTX_SECTION_HEIGHT || layout->info.lod_levels == 0)
-            break;
-        if (end_of(section) > size && section->kind != GTX_SECTION_PATCHES)
-            return end_of(section);
-    }
-    return layout->info.file_size;
-}
-
-/* ---- what there is to decode ---- */
-
-/* NULL where it is not there. */
-static const uint8_t *bytes_of(const beginning *b, const gtx_section *section)
-{
-    if (end_of(section) <= b->size)
-        return b->data + section->offset;
-    for (uint32_t i = 0; i < b->piece_count; ++i) {
-        const gtx_file_part *p = &b->pieces[i];
-        if (section->offset >= p->first && section->offset - p->first <= p->size &&
-            section->stored_size <= p->size - (section->offset - p->first))
-            return p->bytes + (section->offset - p->first);
-    }
-    return NULL;
-}
-
-/* Normals are coded against patches and heights, and coarse ones against finer ones: all of them, or
- * none. */
-static bool has_normals(const beginning *b)
-{
-    bool all = true;
-    for (uint32_t i = 0; i < b->layout.section_count; ++i) {
-        const gtx_section *section = &b->layout.sections[i];
-        const bool needed = section->kind == GTX_SECTION_PATCHES ||
-                            section->kind == GTX_SECTION_HEIGHT ||
-                            section->kind == GTX_SECTION_NORMAL;
-        all = all && (!needed || bytes_of(b, section));
-    }
-    return all;
-}
-
-static void find_parts(beginning *b)
-{
-    const gtx_layout *layout = &b->layout;
-    for (int kind = 0; kind <= GTX_SECTION_META; ++kind)
-        b->images[kind] = -1;
-    for (uint32_t i = 0; i < layout->section_count; ++i)
-        b->lods += layout->sections[i].kind == GTX_SECTION_LOD &&
-                   end_of(&layout->sections[i]) <= b->size;
-    b->missing = layout->info.lod_levels - b->lods;
-    b->normals = has_normals(b);
-    for (uint32_t i = 0; i < layout->section_count; ++i) {
-        const gtx_section *section = &layout->sections[i];
-        const bool there = section->kind < GTX_SECTION_HEIGHT
-                               ? end_of(section) <= b->size
-                               : b->normals && (section->kind == GTX_SECTION_HEIGHT ||
-                                                section->kind == GTX_SECTION_NORMAL);
-        if (!there)
-            continue;
-        gtx_section *part = &b->parts[b->part_count++];
-        *part = *section;
-        if (section->kind == GTX_SECTION_LOD)
-            part->level -= b->missing;
-        else if (gtx_section_is_image(section->kind))
-            b->images[section->kind] = (int)section->level;
-    }
-}
-
-/* Of each image the level that is nearest to the preview's and not finer, and where that has mip
- * levels all coarser ones. */
-static void choose_images(beginning *b)
-{
-    uint32_t count = 0;
-    for (int kind = 0; kind <= GTX_SECTION_META; ++kind)
-        if (b->images[kind] >= 0 && b->images[kind] < (int)b->shift)
-            b->images[kind] = (int)b->shift;
-    for (uint32_t i = 0; i < b->part_count; ++i) {
-        const int level = (int)b->parts[i].level, finest = b->images[b->parts[i].kind];
-        if (!gtx_section_is_image(b->parts[i].kind) || level == finest ||
-            (level > finest && b->normals))
-            b->parts[count++] = b->parts[i];
-    }
-    b->part_count = count;
-}
 
 /* ---- memory ---- */
 
@@ -147,10 +44,10 @@ static bool make_source(beginning *b)
         return false;
     source->allocator = b->options->allocator;
     source->info = b->layout.info;
-    source->info.lod_levels = b->lods;
+    source->info.lod_levels = b->has.lods;
     bool whole = true;
-    for (uint32_t i = 0; i < b->part_count && whole; ++i) {
-        const gtx_section *part = &b->parts[i];
+    for (uint32_t i = 0; i < b->has.part_count && whole; ++i) {
+        const gtx_section *part = &b->has.parts[i];
         void *room = room_for(source, part->size);
         whole = room != NULL;
         if (part->kind == GTX_SECTION_PATCHES)
@@ -176,7 +73,7 @@ static bool is_allowed(beginning *b, uint64_t memory)
                   (uint64_t)info->page_width * info->page_height * info->page_count},
                  {GTX_LIMITED_MEMORY, memory + b->options->bytes_held}};
     for (size_t i = 0; i < sizeof wants / sizeof *wants; ++i) {
-        const uint64_t allowed = gtx_limit_of(b->options->limits, wants[i].which, b->size);
+        const uint64_t allowed = gtx_limit_of(b->options->limits, wants[i].which, b->has.size);
         if (wants[i].wanted > allowed) {
             gtx_check_limit(&b->check, wants[i].which, "the asset", wants[i].wanted, allowed);
             return false;
@@ -185,22 +82,14 @@ static bool is_allowed(beginning *b, uint64_t memory)
     return true;
 }
 
-static bool has_patches(const beginning *b)
-{
-    for (uint32_t i = 0; i < b->part_count; ++i)
-        if (b->parts[i].kind == GTX_SECTION_PATCHES)
-            return true;
-    return false;
-}
-
 /* Of all parts as they come out, and of patches in any case. */
 static uint64_t source_bytes(const beginning *b)
 {
     uint64_t bytes = sizeof(gtx_asset);
-    if (!has_patches(b))
+    if (!b->has.patches)
         bytes += sizeof(gtx_patch) * (uint64_t)b->layout.info.patch_count;
-    for (uint32_t i = 0; i < b->part_count; ++i)
-        bytes += b->parts[i].size;
+    for (uint32_t i = 0; i < b->has.part_count; ++i)
+        bytes += b->has.parts[i].size;
     return bytes;
 }
 
@@ -233,7 +122,7 @@ static void decode(beginning *b)
     gtx_occupancy_free(&b->occupancy, &b->options->allocator);
     if (gtx_check_over(&b->check))
         return;
-    gtx_decode_rest(d, b->normals, true);
+    gtx_decode_rest(d, b->has.normals, true);
     for (uint32_t i = d->part_count; i-- > 1;) { /* the finest first */
         const gtx_part *part = &d->parts[i];
         if (!holds(b, part))
@@ -263,10 +152,11 @@ static bool sketch(beginning *b)
 static uint64_t preview_bytes(const beginning *b, const gtx_lod_mesh *mesh)
 {
     gtx_sizes sizes = {0};
-    for (uint32_t k = 0; k < b->lods; ++k)
+    for (uint32_t k = 0; k < b->has.lods; ++k)
         sizes.lod[k] = b->source->lod_size[k];
     const uint64_t marks =
-        b->normals ? (uint64_t)b->info.page_width * b->info.page_height * b->info.page_count : 0;
+        b->has.normals ? (uint64_t)b->info.page_width * b->info.page_height * b->info.page_count
+                       : 0;
     return gtx_asset_bytes(&b->info, &sizes) + marks +
            gtx_preview_scratch(&b->info, mesh->vertex_count);
 }
@@ -274,13 +164,13 @@ static uint64_t preview_bytes(const beginning *b, const gtx_lod_mesh *mesh)
 static void shape_preview(beginning *b, uint32_t shift)
 {
     b->shift = shift;
-    b->info = gtx_preview_info(&b->layout.info, shift, b->normals);
-    b->info.lod_levels = b->lods;
-    b->info.has_color = b->images[GTX_SECTION_COLOR] >= 0;
-    b->info.has_material = b->images[GTX_SECTION_MATERIAL] >= 0;
-    b->info.has_emission = b->images[GTX_SECTION_EMISSION] >= 0;
+    b->info = gtx_preview_info(&b->layout.info, shift, b->has.normals);
+    b->info.lod_levels = b->has.lods;
+    b->info.has_color = b->has.images[GTX_SECTION_COLOR] >= 0;
+    b->info.has_material = b->has.images[GTX_SECTION_MATERIAL] >= 0;
+    b->info.has_emission = b->has.images[GTX_SECTION_EMISSION] >= 0;
     b->info.emission_scale = b->info.has_emission ? b->info.emission_scale : 0;
-    b->info.file_size = b->size;
+    b->info.file_size = b->has.size;
 }
 
 static gtx_asset *preview(beginning *b)
@@ -288,11 +178,11 @@ static gtx_asset *preview(beginning *b)
     gtx_lod_mesh mesh;
     gtx_get_lod_mesh(b->source, 0, &mesh);
     const bool images = b->info.has_color || b->info.has_material || b->info.has_emission;
-    if (mesh.normals && !images && !b->normals)
+    if (mesh.normals && !images && !b->has.normals)
         shape_preview(b, gtx_preview_shift(&b->layout.info, LIT_TEXELS * mesh.triangle_count));
     if (!is_allowed(b, source_bytes(b) + preview_bytes(b, &mesh)))
         return NULL;
-    gtx_asset *out = gtx_preview_new(b->source, &b->info, b->shift, b->images);
+    gtx_asset *out = gtx_preview_new(b->source, &b->info, b->shift, b->has.images);
     if (!out)
         gtx_check_fail(&b->check, GTX_ERROR_MEMORY, "out of memory for the beginning of an asset");
     return out;
@@ -302,20 +192,22 @@ static gtx_asset *preview(beginning *b)
  * chosen before it is decoded. */
 static uint64_t most_triangles(const beginning *b)
 {
-    for (uint32_t i = 0; i < b->part_count; ++i)
-        if (b->parts[i].kind == GTX_SECTION_LOD && b->parts[i].level == 0)
-            return b->parts[i].size / 15;
+    for (uint32_t i = 0; i < b->has.part_count; ++i)
+        if (b->has.parts[i].kind == GTX_SECTION_LOD && b->has.parts[i].level == 0)
+            return b->has.parts[i].size / 15;
     return 0;
 }
 
 static gtx_asset *read_parts(beginning *b)
 {
-    if (!has_patches(b))
+    if (!b->has.patches)
         b->layout.info = gtx_sketch_info(&b->layout.info);
-    b->shift = b->normals ? 0 : gtx_preview_shift(&b->layout.info, TEXELS * most_triangles(b));
-    choose_images(b);
+    b->shift = b->has.normals ? 0
+                              : gtx_preview_shift(&b->layout.info, TEXELS * most_triangles(b));
+    gtx_arrival_choose(&b->has, b->shift);
     shape_preview(b, b->shift);
-    gtx_decoding_plan(&b->decoding, b->parts, b->part_count, &b->layout.info, b->options->jobs);
+    gtx_decoding_plan(&b->decoding, b->has.parts, b->has.part_count, &b->layout.info,
+                      b->options->jobs);
     b->decoding.hashed = !b->options->skip_hash;
     if (b->decoding.zstd && !gtx_has_zstd())
         gtx_check_fail(&b->check, GTX_ERROR_UNSUPPORTED,
@@ -324,15 +216,17 @@ static gtx_asset *read_parts(beginning *b)
         !is_allowed(b, source_bytes(b) + b->decoding.size + gtx_occupancy_size(&b->layout.info)))
         return NULL;
     gtx_asset *out = NULL;
-    if (!make_source(b) || !gtx_decoding_begin(&b->decoding, b->source, b->data))
+    if (!make_source(b) || !gtx_decoding_begin(&b->decoding, b->source, b->has.data))
         gtx_check_fail(&b->check, GTX_ERROR_MEMORY, "out of memory for the beginning of a file");
     else {
-        for (uint32_t i = 0; i < b->decoding.part_count; ++i)
-            b->decoding.parts[i].bytes = bytes_of(b, b->decoding.parts[i].section);
+        for (uint32_t i = 0; i < b->decoding.part_count; ++i) {
+            gtx_part *part = &b->decoding.parts[i];
+            part->bytes = gtx_arrived_bytes(&b->has, part->section);
+        }
         decode(b);
     }
     gtx_decoding_end(&b->decoding, &b->options->allocator);
-    if (!gtx_check_over(&b->check) && (has_patches(b) || sketch(b)))
+    if (!gtx_check_over(&b->check) && (b->has.patches || sketch(b)))
         out = preview(b);
     gtx_close(b->source);
     return out;
@@ -343,14 +237,15 @@ gtx_result gtx_read_prefix(gtx_error *error, const gtx_read_options *options, co
                            gtx_prefix *prefix, gtx_asset **out)
 {
     beginning b = {.check = {.error = error, .in_file = true, .beginning = true},
-                   .options = options, .data = data, .size = size,
-                   .pieces = pieces, .piece_count = piece_count};
+                   .options = options,
+                   .has = {.data = data, .size = size, .pieces = pieces,
+                           .piece_count = piece_count}};
     *prefix = (gtx_prefix){.needed = GTX_HEADER_SIZE};
     gtx_check quiet = {0};
     gtx_check_head(&quiet, data, size, 0);
     if (quiet.result == GTX_ERROR_TRUNCATED)
         return GTX_OK;
-    const uint32_t count = quiet.result ? 0 : gtx_load_u32(b.data + 28);
+    const uint32_t count = quiet.result ? 0 : gtx_load_u32(b.has.data + 28);
     const bool counted = count >= 4 && count <= GTX_MAX_SECTIONS;
     const uint64_t table = GTX_HEADER_SIZE + (uint64_t)GTX_ENTRY_SIZE * count;
     prefix->needed = table;
@@ -365,9 +260,9 @@ gtx_result gtx_read_prefix(gtx_error *error, const gtx_read_options *options, co
         gtx_check whole = {.error = error};
         return gtx_read_asset(&whole, options, data, size, out);
     }
-    prefix->needed = needed_of(&b.layout, size);
-    find_parts(&b);
-    if (b.lods)
+    prefix->needed = gtx_arrival_needed(&b.layout, size);
+    gtx_arrival_find(&b.has, &b.layout);
+    if (b.has.lods)
         *out = read_parts(&b);
     return b.check.result;
 }

@@ -87,7 +87,7 @@ Bytes put_together(const Content &content)
     return out;
 }
 
-/* In file order, but that the coarsest LODM is first; what may be absent has no level where it is. */
+/* In file order, but that the coarsest LODM is first; what may be absent has no level there. */
 static const struct Kind {
     const char *type;
     uint32_t format, texel, must;
