@@ -75,7 +75,7 @@ private:
                    meets(place.corner[side], place.corner[(side + 1) % 3]);
         }
         /* Whether the line from one point to another comes into the square. */
-        bool meets(const double from[2], const double to[2]) const;
+        bool meets(const double begin[2], const double end[2]) const;
     };
     /* What is found from one end of a way, those before `next` with all around them. */
     struct End {

@@ -64,9 +64,9 @@ uint32_t Paths::near(uint32_t place, size_t side)
     return found;
 }
 
-bool Paths::Window::meets(const double from[2], const double to[2]) const
+bool Paths::Window::meets(const double begin[2], const double end[2]) const
 {
-    const double a[2] = {from[0] - u, from[1] - v}, b[2] = {to[0] - u, to[1] - v};
+    const double a[2] = {begin[0] - u, begin[1] - v}, b[2] = {end[0] - u, end[1] - v};
     for (int k = 0; k < 2; ++k)
         if (std::min(a[k], b[k]) > reach || std::max(a[k], b[k]) < -reach)
             return false;
