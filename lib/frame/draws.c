@@ -132,6 +132,8 @@ static void draw_side(const gtx_draw_call *call, const run *r, uint32_t level,
     draw.range_count =
         gtx_lod_ranges(&r->model->lods, level, two_sided, parts, planner->plan.ranges);
     memcpy(planner->constants.lod_mesh, l->place, sizeof l->place);
+    if (l->faces && cull == GTX_CULL_BACK && r->count == 1)
+        gtx_pick_faces(call, l, &draw);
     if (draw.range_count)
         call->submit(&draw, call->user);
 }

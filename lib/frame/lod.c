@@ -277,6 +277,8 @@ void gtx_lod_free(gtx_lod_meshes *lods, const gtx_allocator *allocator)
                        sizeof *lods->levels[k].border);
         gtx_free_array(allocator, lods->levels[k].runs, lods->patch_count,
                        sizeof *lods->levels[k].runs);
+        gtx_free_array(allocator, lods->levels[k].faces, lods->levels[k].triangle_count,
+                       sizeof *lods->levels[k].faces);
     }
     gtx_free_array(allocator, lods->order, lods->patch_count, sizeof *lods->order);
     gtx_free_array(allocator, lods->edited, lods->patch_count, sizeof *lods->edited);

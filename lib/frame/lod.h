@@ -26,6 +26,13 @@ typedef struct gtx_lod_run {
     uint32_t first_vertex, vertex_count;
 } gtx_lod_run;
 
+/* The plane of a triangle, and its corners, as indices have them. */
+typedef struct gtx_lod_face {
+    int8_t normal[3];
+    int16_t offset;
+    uint16_t corner[3];
+} gtx_lod_face;
+
 typedef struct gtx_lod_level {
     float place[4];           /* origin and step of the positions */
     float error;              /* object units; 0: as near to the source as height fields */
@@ -36,6 +43,7 @@ typedef struct gtx_lod_level {
     uint32_t *border;         /* from border[i] on they share a vertex with another patch */
     gtx_lod_run *runs;        /* room for a patch each; indices count from a run's first vertex */
     uint32_t run_count;
+    gtx_lod_face *faces;      /* NULL, or all triangles, where what faces the eye is to be picked */
     uint32_t index_size;      /* bytes */
     uint32_t vertex_size;     /* of either kind */
     uint64_t vertex_offset, index_offset;
@@ -105,6 +113,9 @@ void gtx_lod_find_openings(const gtx_asset *asset, const gtx_allocator *allocato
                            gtx_lod_meshes *out);
 bool gtx_lod_hides_backs(const gtx_lod_meshes *lods, uint32_t level,
                          const struct gtx_frustum *f);
+/* facing.c: the faces of all levels that are filled and have indices of 16 bits; none without
+ * memory. Whoever submits the model's draws takes indices that they bring along. */
+void gtx_lod_find_faces(const gtx_allocator *allocator, gtx_lod_meshes *out);
 void gtx_lod_free_staging(gtx_lod_meshes *lods, const gtx_allocator *allocator);
 void gtx_lod_free(gtx_lod_meshes *lods, const gtx_allocator *allocator);
 

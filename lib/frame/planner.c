@@ -66,6 +66,7 @@ void gtx_planner_free(gtx_planner *planner)
     gtx_tiles_free(&planner->tiles, &planner->allocator);
     gtx_grids_free(&planner->grids, &planner->allocator);
     gtx_occlusion_free(&planner->occlusion, &planner->allocator);
+    gtx_scratch_free(&planner->allocator, &planner->picked);
 }
 
 void gtx_planner_destroy(gtx_planner *planner)

@@ -24,6 +24,7 @@ struct gtx_planner {
     gtx_tiles tiles;
     gtx_grids grids;
     gtx_occlusion occlusion;  /* of them */
+    gtx_scratch picked;       /* indices of what faces the eye */
     gtx_draw_call call;       /* the frame begun last */
     gtx_constants constants;  /* of its draws, one at a time */
 };
@@ -32,5 +33,9 @@ struct gtx_planner {
 gtx_result gtx_planner_init(gtx_planner *planner, const gtx_allocator *allocator,
                             const gtx_costs *costs, gtx_error *error);
 void gtx_planner_free(gtx_planner *planner);
+
+/* facing.c: of a draw of one instance by a level with faces, whose ranges are the plan's, leaves
+ * what faces the eye; nothing else without memory. */
+void gtx_pick_faces(const gtx_draw_call *call, const gtx_lod_level *level, gtx_frame_draw *draw);
 
 #endif

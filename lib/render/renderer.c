@@ -27,6 +27,7 @@ static void create_shared(gtx_renderer *renderer)
     gl->BindVertexArray(renderer->vertex_array);
     gtx_gl_label(gl, GL_VERTEX_ARRAY, renderer->vertex_array, "geotex attributes");
     gl->BindVertexArray(0);
+    gl->GenBuffers(1, &renderer->picked_buffer);
     gl->GenBuffers(1, &renderer->instance_buffer);
     gl->BindBuffer(GL_ARRAY_BUFFER, renderer->instance_buffer);
     gtx_gl_label(gl, GL_BUFFER, renderer->instance_buffer, "geotex instances");
@@ -90,6 +91,7 @@ void gtx_renderer_destroy(gtx_renderer *renderer)
     gtx_grid_stream_destroy(renderer);
     gtx_block_stream_destroy(renderer);
     renderer->gl.DeleteVertexArrays(1, &renderer->vertex_array);
+    renderer->gl.DeleteBuffers(1, &renderer->picked_buffer);
     renderer->gl.DeleteBuffers(1, &renderer->instance_buffer);
     const gtx_allocator hooks = renderer->allocator;
     gtx_planner_free(&renderer->planner);

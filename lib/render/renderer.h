@@ -27,7 +27,7 @@ struct gtx_renderer {
     void (*log)(const char *message, void *user);
     void *log_user;
     gtx_program programs[GTX_PIPELINE_COUNT]; /* 0: not needed yet */
-    gl_uint vertex_array, instance_buffer;
+    gl_uint vertex_array, instance_buffer, picked_buffer;
     gtx_planner planner;
     gtx_tile_stream tile_stream;
     gtx_grid_stream grid_stream;

@@ -47,11 +47,16 @@ static void set_proxies(const gtx_renderer *renderer, const gtx_model *model)
     gl->EnableVertexAttribArray(1);
 }
 
-static void set_lods(const gtx_renderer *renderer, const gtx_model *model)
+static void set_lods(const gtx_renderer *renderer, const gtx_frame_draw *draw)
 {
     const gtx_gl *gl = &renderer->gl;
-    gl->BindBuffer(GL_ARRAY_BUFFER, model->lods.vertex_buffer);
-    gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, model->lods.index_buffer);
+    const gtx_lod_meshes *lods = &draw->model->lods;
+    gl->BindBuffer(GL_ARRAY_BUFFER, lods->vertex_buffer);
+    gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER,
+                   draw->index_data ? renderer->picked_buffer : lods->index_buffer);
+    if (draw->index_data)
+        gl->BufferData(GL_ELEMENT_ARRAY_BUFFER, (gl_pointer)draw->index_bytes, draw->index_data,
+                       GL_STREAM_DRAW);
     gl->EnableVertexAttribArray(0);
     gl->EnableVertexAttribArray(1);
 }
@@ -195,7 +200,7 @@ void gtx_submit_draw(const gtx_frame_draw *draw, void *user)
             renderer->gl.Uniform4fv(s->program->place, 7, placed->world[0]);
         else
             set_instances(renderer, draw->first_instance, 1);
-        set_lods(renderer, draw->model);
+        set_lods(renderer, draw);
         draw_lods(&renderer->gl, draw, !single);
     } else {
         set_proxies(renderer, draw->model);

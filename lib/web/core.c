@@ -4,6 +4,7 @@
 
 #include "asset/read.h"
 #include "base/alloc.h"
+#include "frame/model.h"
 #include "render/gl.h"
 
 #include <geotex/render.h>
@@ -190,12 +191,15 @@ WEB_API const float *gtxw_raycast(const gtx_caster *caster, const gtx_asset *ass
 
 /* ---- models ---- */
 
-/* Maps are the asset's, which stays until all is sent: gtxw_model_sent. */
-WEB_API gtx_model *gtxw_model_prepare(const gtx_asset *asset)
+/* Maps are the asset's, which stays until all is sent: gtxw_model_sent. With `picked` draws leave
+ * out triangles that face away. */
+WEB_API gtx_model *gtxw_model_prepare(const gtx_asset *asset, int picked)
 {
     const gtx_model_desc desc = {.borrow = 1};
     gtx_model *model = NULL;
     gtx_model_prepare(asset, &desc, &model, gtxw_begin());
+    if (model && picked)
+        gtx_lod_find_faces(&model->allocator, &model->lods);
     return model;
 }
 

@@ -18,6 +18,9 @@ export {GeotexError};
 export const Method = Object.freeze({AUTO: 0, CAST: 1, PAPER: 2, LOD: 3, GRID: 4});
 export const Pass = Object.freeze({FORWARD: 0, DEPTH: 1, ID: 2, GBUFFER: 3});
 
+/* What rasterizes on the CPU: there triangles that face away are left out before they are drawn. */
+const SOFTWARE = /SwiftShader|llvmpipe|softpipe|Basic Render/;
+
 /* An opened `.gtx`: what it says, and rays into it on the CPU. One that a worker has opened is opened
  * here too once that is needed: by a ray, or after a lost context. */
 export class Asset {
@@ -74,7 +77,7 @@ export class Model {
     this.ready = false;
     core.plan = made?.plan;
     this.handle = geotex.must(made ? core._gtxw_model_unpack()
-                                   : core._gtxw_model_prepare(asset.handle));
+                                   : core._gtxw_model_prepare(asset.handle, geotex.software));
     core.plan = null;
     this.resources = made ? made.resources : resourcesOf(core, this.handle);
     this.cpuBytes = made?.plan.length ?? 0;
@@ -224,6 +227,8 @@ export class Geotex {
   constructor(gl, core, workshop) {
     Object.assign(this, {gl, core, workshop, models: new Set(), shadings: new Set(), numbers: 0,
                          room: 0});
+    const more = gl.getExtension('WEBGL_debug_renderer_info');
+    this.software = SOFTWARE.test(gl.getParameter(more?.UNMASKED_RENDERER_WEBGL ?? gl.RENDERER));
     this.begin();
     this.lost = (event) => { event.preventDefault(); this.forget(); };
     this.restored = () => this.begin();
@@ -304,7 +309,7 @@ export class Geotex {
    * openPrefix has it, and two `pieces` {first, bytes} of the rest; or what was read for a `request` of
    * a world. Opened and prepared by a worker, where there can be one. */
   async load(bytes, how = {}) {
-    const made = await this.workshop.prepare(bytes, how);
+    const made = await this.workshop.prepare(bytes, {...how, software: this.software});
     if (this.closed)
       throw new GeotexError(10, 'geotex has been disposed');
     if (!made) {

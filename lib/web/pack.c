@@ -31,6 +31,7 @@ static void each_array(gtx_model *m, array_fn *fn, void *user)
         EACH(lods->levels[k].first, patches + 1);
         EACH(lods->levels[k].border, patches);
         EACH(lods->levels[k].runs, patches);
+        EACH(lods->levels[k].faces, lods->levels[k].triangle_count);
     }
     EACH(lods->order, lods->patch_count);
     EACH(lods->edited, lods->patch_count);

@@ -14,7 +14,7 @@ function prepare(bytes, how) {
     given.push(out.buffer);
     return out;
   };
-  const model = core._gtxw_model_prepare(handle);
+  const model = core._gtxw_model_prepare(handle, how.software);
   try {
     if (!model)
       throw failure(core);

@@ -1,0 +1,104 @@
+/* Triangles of LOD meshes that face the eye, picked for rasterizers in software: from outside at
+ * most half of those of a solid do, and vertices and triangles take most of a frame. */
+#include "frame/frustum.h"
+#include "frame/planner.h"
+
+#include "base/alloc.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Normals are in 127ths, and offsets in so many steps of positions times that, rounded down. Half a
+ * diagonal of the former is how far they are off, which eyes are off by where they are. */
+static const float one = 127, offset_step = 1024, off = 0.87f;
+
+static gtx_lod_face face_of(const uint8_t *vertices, uint32_t vertex_size, const uint16_t corner[3])
+{
+    gtx_lod_face out = {{0, 0, 0}, INT16_MIN, {corner[0], corner[1], corner[2]}};
+    uint16_t at[3][3];
+    float n[3], offset = 0;
+    for (int c = 0; c < 3; ++c)
+        memcpy(at[c], vertices + (size_t)corner[c] * vertex_size, sizeof at[c]);
+    for (int k = 0; k < 3; ++k) {
+        const int i = (k + 1) % 3, j = (k + 2) % 3;
+        n[k] = (float)(at[1][i] - at[0][i]) * (float)(at[2][j] - at[0][j]) -
+               (float)(at[1][j] - at[0][j]) * (float)(at[2][i] - at[0][i]);
+    }
+    const float length = sqrtf(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    for (int k = 0; k < 3 && length > 0; ++k) {
+        out.normal[k] = (int8_t)floorf(one * n[k] / length + 0.5f);
+        offset += (float)(out.normal[k] * at[0][k]);
+    }
+    if (length > 0)
+        out.offset = (int16_t)floorf(offset / offset_step);
+    return out;
+}
+
+void gtx_lod_find_faces(const gtx_allocator *allocator, gtx_lod_meshes *lods)
+{
+    for (uint32_t k = 0; k < lods->level_count; ++k) {
+        gtx_lod_level *level = &lods->levels[k];
+        if (level->index_size == sizeof(uint16_t))
+            level->faces = gtx_alloc_raw(allocator, level->triangle_count, sizeof *level->faces);
+        uint32_t t = 0;
+        for (const gtx_lod_run *run = level->runs; level->faces && t < level->triangle_count; ++run)
+            for (; t < run->end; ++t) {
+                const size_t first = (size_t)run->first_vertex * level->vertex_size;
+                uint16_t corner[3];
+                memcpy(corner, lods->indices + level->index_offset + t * sizeof corner,
+                       sizeof corner);
+                level->faces[t] = face_of(lods->vertices + level->vertex_offset + first,
+                                          level->vertex_size, corner);
+            }
+    }
+}
+
+/* Of an eye in steps of positions, as gtx_frustum has it; gives the number of indices. */
+static uint32_t pick(const gtx_lod_face *face, uint32_t count, const float eye[4], uint16_t *out)
+{
+    const float middle = 0.5f * UINT16_MAX * eye[3], w = eye[3] * offset_step;
+    float square = 0;
+    for (int k = 0; k < 3; ++k)
+        square += (eye[k] - middle) * (eye[k] - middle);
+    const float least = -off * (sqrtf(square) + 1.74f * middle);
+    const uint16_t *begin = out;
+    for (const gtx_lod_face *end = face + count; face < end; ++face) {
+        const float before = eye[0] * face->normal[0] + eye[1] * face->normal[1] +
+                             eye[2] * face->normal[2] - w * face->offset;
+        memcpy(out, face->corner, sizeof face->corner);
+        out += before >= least ? 3 : 0;
+    }
+    return (uint32_t)(out - begin);
+}
+
+void gtx_pick_faces(const gtx_draw_call *call, const gtx_lod_level *level, gtx_frame_draw *draw)
+{
+    gtx_planner *planner = call->planner;
+    const gtx_frustum f =
+        gtx_frustum_of(call, draw->model, &planner->instances[draw->first_instance]);
+    uint32_t most = 3, count = 0, ranges = 0; /* the last one is written before it is dropped */
+    for (uint32_t i = 0; i < draw->range_count; ++i)
+        most += draw->ranges[i].count;
+    uint16_t *indices =
+        f.two ? NULL : gtx_scratch_reserve(&planner->allocator, &planner->picked, most, 2);
+    if (!indices)
+        return;
+    float eye[4] = {0, 0, 0, (float)f.eye[3]};
+    for (int k = 0; k < 3; ++k)
+        eye[k] = (float)((f.eye[k] - f.eye[3] * (double)level->place[k]) / (double)level->place[3]);
+    for (uint32_t i = 0; i < draw->range_count; ++i) {
+        gtx_range r = draw->ranges[i], *last = &planner->plan.ranges[ranges];
+        const gtx_lod_face *first = level->faces + r.first / 3;
+        r.first = count;
+        r.count = pick(first, r.count / 3, eye, indices + count);
+        count += r.count;
+        if (ranges && last[-1].base_vertex == r.base_vertex)
+            last[-1].count += r.count;
+        else if (r.count)
+            planner->plan.ranges[ranges++] = r;
+    }
+    draw->range_count = ranges;
+    draw->index_offset = 0;
+    draw->index_data = indices;
+    draw->index_bytes = count * sizeof *indices;
+}
