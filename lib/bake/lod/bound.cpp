@@ -93,20 +93,26 @@ LevelBound::LevelBound(const BoundSource &source, const LevelMesh &mesh, const L
                        double speck, const BoundedLevel *finer, Task &task)
     : source_(source), mesh_(mesh), lattice_(lattice), speck_(speck), finer_(finer), task_(task)
 {
-    begin(std::make_unique<LevelSurface>(mesh, lattice, task));
+    level_ = std::make_unique<LevelSurface>(mesh, lattice, task);
+    const SortedSurface &surface = finer ? finer->level->surface : source.surface();
+    Overlay overlay = lay_over(surface, level_->surface, finer ? finer->from_source.get() : nullptr,
+                               finer ? finer->to_source.get() : nullptr, task);
+    of_finer_ = std::move(overlay.of_fine);
+    from_source_ = std::make_unique<Reached>(std::move(overlay.to_coarse));
+    to_source_ = std::make_unique<Reached>(std::move(overlay.of_coarse));
 }
 
-/* What is known of triangles stays, where they do. */
+/* After it was changed: what is known of triangles stays, where they do. */
 void LevelBound::begin(std::unique_ptr<const LevelSurface> level)
 {
     const SortedSurface &surface = level->surface;
     auto from = std::make_unique<Reached>(surface.size());
     auto to = std::make_unique<Reached>(surface.size());
-    Vector<uint32_t> was(level_ ? mesh_.triangles.size() : 0, NO_PATCH);
-    for (uint32_t t = 0; level_ && t < level_->surface.size(); ++t)
+    Vector<uint32_t> was(mesh_.triangles.size(), NO_PATCH);
+    for (uint32_t t = 0; t < level_->surface.size(); ++t)
         was[level_->of_mesh(t)] = t;
     for (uint32_t t = 0; t < surface.size(); ++t) {
-        const uint32_t old = level_ ? was[level->of_mesh(t)] : NO_PATCH;
+        const uint32_t old = was[level->of_mesh(t)];
         const bool same = old != NO_PATCH && level_->surface.corners(old) == surface.corners(t);
         from->tell(t, same ? from_source_->at(old) : 0);
         to->tell(t, same ? to_source_->at(old) : INFINITY);
@@ -116,11 +122,23 @@ void LevelBound::begin(std::unique_ptr<const LevelSurface> level)
     to_source_ = std::move(to);
 }
 
+/* Of so many triangles those that may be farther. */
+template <class Away> static Vector<uint32_t> those_beyond(double within, size_t count, Away away)
+{
+    Vector<uint32_t> out;
+    for (size_t t = 0; t < count; ++t)
+        if (!(double(away(t)) <= within))
+            out.push_back(uint32_t(t));
+    return out;
+}
+
 /* The triangles of the source that may be farther from the level. Each point of another is near
  * one of the finer level that is near enough to this one: distances add up. */
 Few LevelBound::few_of_source(double within)
 {
-    if (!finer_ || source_.is_speck(speck_)) /* all is shown again */
+    if (!finer_)
+        return those_beyond(within, of_finer_.size(), [&](size_t t) { return of_finer_[t]; });
+    if (source_.is_speck(speck_)) /* all is shown again */
         return {};
     const SortedSurface &finer = finer_->level->surface;
     Vector<Vector<gtx::Box>> boxes(finer.tree().parts());
@@ -130,6 +148,8 @@ Few LevelBound::few_of_source(double within)
         finer.tree().visit(part, [](const gtx::Box &) { return false; }, [&](uint32_t t) {
             search.before = finer_->from_source->at(t);
             search.free = within - search.before;
+            if (double(of_finer_[t]) <= search.free)
+                return;
             const Corners corners = finer.corners(t);
             if (!(search.free > 0 && search.is_within(corners)))
                 boxes[part].push_back(box_around(corners, search.before));
@@ -144,15 +164,17 @@ Few LevelBound::few_of_source(double within)
 /* The triangles of the level that may be farther from the source. */
 Few LevelBound::few_of_level(double within)
 {
-    if (!finer_)
-        return {};
     const SortedSurface &level = level_->surface;
+    if (!finer_)
+        return those_beyond(within, level.size(), [&](size_t t) { return to_source_->at(t); });
     Vector<Vector<uint32_t>> few(level.tree().parts());
     task_.parallel(few.size(), [&](size_t part) {
         FarSearch search = {finer_->level->surface, within, 0};
         search.beyonds = finer_->to_source.get();
         level.tree().visit(part, [](const gtx::Box &) { return false; }, [&](uint32_t t) {
             search.reach = 0;
+            if (to_source_->at(t) <= within)
+                return;
             if (search.is_within(level.corners(t)))
                 to_source_->set(t, search.reach);
             else

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bake/lod/looks.hpp"
+#include "bake/lod/overlay.hpp"
 
 #include <memory>
 
@@ -92,6 +93,7 @@ private:
     std::unique_ptr<const LevelSurface> level_;
     std::unique_ptr<Reached> from_source_;
     std::unique_ptr<Reached> to_source_; /* infinite where it is not known yet */
+    Vector<float> of_finer_;     /* as in Overlay, of the finer level or of the source */
 };
 
 } // namespace gtx::baking

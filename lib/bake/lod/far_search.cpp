@@ -12,6 +12,15 @@ namespace gtx::baking {
  * 0.4 % more at an eighth, 3 % without a limit. */
 constexpr double MANY = 8;
 
+void Reached::raise(size_t triangle, double away)
+{
+    float most = away_[triangle].load(std::memory_order_relaxed);
+    while (away > double(most) &&
+           !away_[triangle].compare_exchange_weak(most, rounded_up(away),
+                                                  std::memory_order_relaxed)) {
+    }
+}
+
 static double radius_of(const Corners &c, const Vec3d &middle)
 {
     return std::max({length(c[0] - middle), length(c[1] - middle), length(c[2] - middle)});

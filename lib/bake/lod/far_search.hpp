@@ -54,6 +54,8 @@ public:
     size_t size() const { return triangles_.size(); }
     std::array<Vec3d, 3> corners(size_t t) const { return shapes_.corners(t); }
     const Vec3d &corner(size_t t, int k) const { return positions_[triangles_[t][k]]; }
+    size_t vertex_count() const { return positions_.size(); }
+    const Vec3d &position(size_t vertex) const { return positions_[vertex]; }
     const std::array<uint32_t, 3> &vertices(size_t t) const { return triangles_[t]; }
     /* The triangles that go on beyond its edges, the first from corner 0 to corner 1, the same way
      * round; NO_TRIANGLE where none or several do. */
@@ -80,11 +82,8 @@ public:
 
     void tell(size_t triangle, double away)
     {
-        float most = away_[triangle].load(std::memory_order_relaxed);
-        while (away > double(most) &&
-               !away_[triangle].compare_exchange_weak(most, rounded_up(away),
-                                                      std::memory_order_relaxed)) {
-        }
+        if (away > at(triangle)) /* mostly it is not */
+            raise(triangle, away);
     }
     void set(size_t triangle, double away)
     {
@@ -94,13 +93,15 @@ public:
     {
         return double(away_[triangle].load(std::memory_order_relaxed));
     }
-
-private:
     static float rounded_up(double away)
     {
         const float near = float(away);
         return double(near) < away ? gtx::Box::above(near) : near;
     }
+
+private:
+    void raise(size_t triangle, double away);
+
     Vector<std::atomic<float>> away_;
 };
 
