@@ -19,34 +19,26 @@ namespace gtx {
  * takes as much time as looks(i) nodes of the tree. It outlives the tree. */
 template <class Shapes> class NearestTree {
 public:
-    /* On the task's threads, with so much of its stage `done`. */
-    NearestTree(const Shapes &shapes, Task &task, double done) : shapes_(shapes)
+    /* On the task's threads, with so much of its stage `done`. `in_order`: the shapes are that of
+     * a tree already, but for a few, and stay so. */
+    NearestTree(const Shapes &shapes, Task &task, double done, bool in_order = false)
+        : shapes_(shapes)
     {
         leaves_ = 1;
         while (leaves_ * LEAF < shapes.size())
             leaves_ *= 2;
-        Vector<Centre> centres(shapes.size());
         const auto parallel = [&](size_t count, const std::function<void(size_t)> &body) {
             task.parallel(count, body, done, done);
         };
-        parallel(parts(), [&](size_t part) {
-            for (uint32_t i = first(part); i < first(part + 1); ++i)
-                centres[i] = {Vec3f(shapes_.box(i).centre()), i};
-        });
-        size_t nodes = 1;
-        for (; nodes < std::min(parts(), FORKS); nodes *= 2)
-            parallel(nodes, [&](size_t n) { halve(centres, leaves_ / nodes, n); });
-        parallel(nodes, [&](size_t n) { split(centres, leaves_ / nodes, n); });
         order_.resize(shapes.size());
+        if (in_order)
+            std::iota(order_.begin(), order_.end(), 0u);
+        else
+            find_order(parallel);
         boxes_.resize(2 * leaves_);
         parallel(parts(), [&](size_t part) {
-            for (uint32_t i = first(part); i < first(part + 1); ++i) {
-                order_[i] = centres[i].shape;
+            for (uint32_t i = first(part); i < first(part + 1); ++i)
                 boxes_[leaves_ + i / LEAF].add(shapes_.box(order_[i]));
-            }
-            /* In which order halving leaves them is the library's choice. */
-            for (size_t i = first(part), end = first(part + 1); i < end; i += LEAF)
-                std::sort(&order_[i], &order_[i] + std::min(LEAF, end - i));
         });
         for (size_t n = leaves_ - 1; n > 0; --n) {
             boxes_[n].add(boxes_[2 * n]);
@@ -223,6 +215,25 @@ private:
         return uint32_t(std::min(part * PART * LEAF, shapes_.size()));
     }
 
+    template <class Parallel> void find_order(const Parallel &parallel)
+    {
+        Vector<Centre> centres(shapes_.size());
+        parallel(parts(), [&](size_t part) {
+            for (uint32_t i = first(part); i < first(part + 1); ++i)
+                centres[i] = {Vec3f(shapes_.box(i).centre()), i};
+        });
+        size_t nodes = 1;
+        for (; nodes < std::min(parts(), FORKS); nodes *= 2)
+            parallel(nodes, [&](size_t n) { halve(centres, leaves_ / nodes, n); });
+        parallel(nodes, [&](size_t n) { split(centres, leaves_ / nodes, n); });
+        parallel(parts(), [&](size_t part) {
+            for (uint32_t i = first(part); i < first(part + 1); ++i)
+                order_[i] = centres[i].shape;
+            /* In which order halving leaves them is the library's choice. */
+            for (size_t i = first(part), end = first(part + 1); i < end; i += LEAF)
+                std::sort(&order_[i], &order_[i] + std::min(LEAF, end - i));
+        });
+    }
     /* Orders the shapes of the `n`th node of so many leaves: those of its first child have the
      * lower centres along the longest side of all, and fill it. */
     void halve(Vector<Centre> &centres, size_t leaves, size_t n) const

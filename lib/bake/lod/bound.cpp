@@ -58,12 +58,35 @@ bool BoundSource::is_shown(uint32_t triangle, double speck) const
     return parts_[surface_.given(triangle)] > speck || is_speck(speck);
 }
 
-static Vector<uint32_t> stored_triangles(const LevelMesh &mesh)
+/* In the order that they had before, with others where some are gone and at the end. */
+static Vector<uint32_t> stored_triangles(const LevelMesh &mesh, const LevelSurface *before)
 {
-    Vector<uint32_t> out;
+    Vector<uint8_t> is_new(mesh.triangles.size(), 0);
     for (uint32_t t = 0; t < mesh.triangles.size(); ++t)
-        if (mesh.patch[t] != NO_PATCH && !mesh.collapses(mesh.triangles[t]))
+        is_new[t] = mesh.patch[t] != NO_PATCH && !mesh.collapses(mesh.triangles[t]);
+    Vector<uint32_t> out;
+    size_t gaps = 0;
+    for (size_t i = 0; before && i < before->surface.size(); ++i) {
+        const uint32_t t = before->of_mesh(uint32_t(i));
+        gaps += !is_new[t];
+        out.push_back(is_new[t] ? t : NO_PATCH);
+        is_new[t] = 0;
+    }
+    size_t gap = 0;
+    for (uint32_t t = 0; t < is_new.size(); ++t) {
+        if (!is_new[t])
+            continue;
+        if (gaps) {
+            while (out[gap] != NO_PATCH)
+                ++gap;
+            out[gap] = t;
+            --gaps;
+        } else {
             out.push_back(t);
+        }
+    }
+    if (gaps)
+        out.erase(std::remove(out.begin(), out.end(), NO_PATCH), out.end());
     return out;
 }
 
@@ -83,9 +106,10 @@ static Vector<Triangle> triangles_of(const LevelMesh &mesh, const Vector<uint32_
     return out;
 }
 
-LevelSurface::LevelSurface(const LevelMesh &mesh, const Lattice &lattice, Task &task)
-    : number(stored_triangles(mesh)),
-      surface(points_of(mesh, lattice), triangles_of(mesh, number), task, 1)
+LevelSurface::LevelSurface(const LevelMesh &mesh, const Lattice &lattice,
+                           const LevelSurface *before, Task &task)
+    : number(stored_triangles(mesh, before)),
+      surface(points_of(mesh, lattice), triangles_of(mesh, number), task, 1, before)
 {
 }
 
@@ -93,7 +117,7 @@ LevelBound::LevelBound(const BoundSource &source, const LevelMesh &mesh, const L
                        double speck, const BoundedLevel *finer, Task &task)
     : source_(source), mesh_(mesh), lattice_(lattice), speck_(speck), finer_(finer), task_(task)
 {
-    level_ = std::make_unique<LevelSurface>(mesh, lattice, task);
+    level_ = std::make_unique<LevelSurface>(mesh, lattice, nullptr, task);
     const SortedSurface &surface = finer ? finer->level->surface : source.surface();
     Overlay overlay = lay_over(surface, level_->surface, finer ? finer->from_source.get() : nullptr,
                                finer ? finer->to_source.get() : nullptr, task);
@@ -103,8 +127,9 @@ LevelBound::LevelBound(const BoundSource &source, const LevelMesh &mesh, const L
 }
 
 /* After it was changed: what is known of triangles stays, where they do. */
-void LevelBound::begin(std::unique_ptr<const LevelSurface> level)
+void LevelBound::change()
 {
+    auto level = std::make_unique<LevelSurface>(mesh_, lattice_, level_.get(), task_);
     const SortedSurface &surface = level->surface;
     auto from = std::make_unique<Reached>(surface.size());
     auto to = std::make_unique<Reached>(surface.size());
@@ -235,7 +260,7 @@ double LevelBound::after(const Spots &spots, const Vector<Corners> &changed)
             box_around(mesh_.corners(mesh_.triangles[p.near], lattice_), spots.most));
     }
     if (!changed.empty())
-        begin(std::make_unique<LevelSurface>(mesh_, lattice_, task_));
+        change();
     const auto any = [](uint32_t) { return true; };
     const auto shown = [&](uint32_t t) { return is_shown(t); };
     FarSearch there = {level_->surface, spots.most, 0};

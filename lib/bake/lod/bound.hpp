@@ -47,7 +47,9 @@ struct LevelSurface {
     Vector<uint32_t> number;
     SortedSurface surface;
 
-    LevelSurface(const LevelMesh &mesh, const Lattice &lattice, Task &task);
+    /* `before`, or null, is what it was until a few of its triangles changed. */
+    LevelSurface(const LevelMesh &mesh, const Lattice &lattice, const LevelSurface *before,
+                 Task &task);
     uint32_t of_mesh(uint32_t triangle) const { return number[surface.given(triangle)]; }
 };
 
@@ -80,7 +82,7 @@ public:
 
 private:
     bool is_shown(uint32_t t) const { return source_.is_shown(t, speck_); }
-    void begin(std::unique_ptr<const LevelSurface> level);
+    void change();
     Few few_of_source(double within);
     Few few_of_level(double within);
 

@@ -46,8 +46,9 @@ struct Surface {
 /* A surface and a tree of its triangles, which have the order of the tree. */
 class SortedSurface {
 public:
+    /* `in_order`: triangles have that of one already, but for a few. */
     SortedSurface(Vector<Vec3d> positions, Vector<std::array<uint32_t, 3>> triangles, Task &task,
-                  double done);
+                  double done, bool in_order = false);
     SortedSurface(const SortedSurface &) = delete;
     SortedSurface &operator=(const SortedSurface &) = delete;
 
