@@ -151,7 +151,8 @@ SortedSurface::SortedSurface(Vector<Vec3d> positions,
                              Vector<std::array<uint32_t, 3>> triangles, Task &task, double done,
                              bool in_order)
     : positions_(std::move(positions)), triangles_(std::move(triangles)),
-      shapes_{positions_, triangles_}, tree_(shapes_, task, done, in_order), given_(tree_.renumber())
+      shapes_{positions_, triangles_}, tree_(shapes_, task, done, in_order),
+      given_(tree_.renumber())
 {
     Vector<Vec3d> places;
     Vector<std::array<uint32_t, 3>> ordered;
