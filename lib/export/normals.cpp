@@ -77,10 +77,10 @@ std::array<uint8_t, 3> PatchNormals::code(const ExportVertex *const corner[3],
 {
     Vec3d t, b, z;
     for (int k = 0; k < 3; ++k) {
-        const Vec3d normal(corner[k]->normal), tangent(corner[k]->tangent);
-        z += normal * weights[k];
-        t += tangent * weights[k];
-        b += cross(normal, tangent) * (double(BITANGENT_SIGN) * weights[k]);
+        const Vec3d up(corner[k]->normal), along(corner[k]->tangent);
+        z += up * weights[k];
+        t += along * weights[k];
+        b += cross(up, along) * (double(BITANGENT_SIGN) * weights[k]);
     }
     Vec3d m = solved(normalize(t), normalize(b), normalize(z), n);
     m.z = std::max(m.z, 0.); /* behind the vertex normals there are none */

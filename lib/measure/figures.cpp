@@ -180,8 +180,8 @@ void Look::faults()
  * height field has others. */
 bool Look::tells_which_way(size_t at, const Vec3d &normal) const
 {
-    const Vec3d out = all.mesh.area_vector(image.triangle[at]);
-    return image.front[at] && dot(out, normal) * dot(out, view.toward) > 0;
+    const Vec3d area = all.mesh.area_vector(image.triangle[at]);
+    return image.front[at] && dot(area, normal) * dot(area, view.toward) > 0;
 }
 
 void Look::appearance(uint32_t i, uint32_t j, const ViewHit &hit, double depth_error,

@@ -65,14 +65,14 @@ bool FarSearch::is_covered_by_two(const FarCorner &a, const FarCorner &b, const 
     const double limit = most() - beyond, limit_beside = most() - more;
     double here = 0, there = 0;
     for (int n = 0; n < 3; ++n) {
-        const int next = n == 2 ? 0 : n + 1;
-        const double from = inside[n][side], to_next = inside[next][side];
+        const int after = n == 2 ? 0 : n + 1;
+        const double from = inside[n][side], to_next = inside[after][side];
         if (from >= 0)
             here = std::max(here, nearest.distance2(at[n]));
         else
             there = std::max(there, beside.distance2(at[n]));
         if ((from < 0) != (to_next < 0)) {
-            const Vec3d cut = at[n] + (at[next] - at[n]) * (from / (from - to_next));
+            const Vec3d cut = at[n] + (at[after] - at[n]) * (from / (from - to_next));
             here = std::max(here, nearest.distance2(cut));
             there = std::max(there, beside.distance2(cut));
         }

@@ -214,8 +214,8 @@ void Viewer::take_drops()
 
 void Viewer::receive(Loader::Result result)
 {
-    for (const auto &[name, sentence] : result.warnings)
-        report_warning(result.path.c_str(), name, sentence.c_str());
+    for (const auto &[kind, sentence] : result.warnings)
+        report_warning(result.path.c_str(), kind, sentence.c_str());
     for (gtx_model *model : incoming.models) /* of a drop before, not yet uploaded */
         gtx_model_destroy(scene_renderer->renderer, model);
     incoming = Loader::Result();
