@@ -134,8 +134,8 @@ static void decode(beginning *b)
     }
 }
 
-/* Patches for an LOD mesh that came without. False where they cannot be had: then the file's own
- * are waited for. */
+/* Patches for an LOD mesh that came without. False where there are none whose floats are fine
+ * enough: then the file's own are waited for. */
 static bool sketch(beginning *b)
 {
     gtx_check quiet = {0};
@@ -145,6 +145,8 @@ static bool sketch(beginning *b)
     }
     gtx_check_patches(&quiet, b->source, 0, &b->occupancy);
     gtx_occupancy_free(&b->occupancy, &b->options->allocator);
+    if (!gtx_check_over(&quiet))
+        gtx_check_lod(&quiet, b->source, 0, 0);
     return !gtx_check_over(&quiet);
 }
 
