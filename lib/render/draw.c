@@ -73,6 +73,8 @@ gtx_result gtx_draw(gtx_renderer *renderer, const gtx_view *view, const gtx_inst
     if (renderer && view)
         renderer->planner.own_vertices =
             view->shading && gtx_shading_has(view->shading, TECHNIQUE_OWN_LOD_LIT);
+    if (renderer)
+        renderer->lacking = 0;
     gtx_submission s = {.renderer = renderer, .view = view};
     gtx_result result = gtx_frame_begin(renderer ? &renderer->planner : NULL, view, instances,
                                         count, &frame, error);

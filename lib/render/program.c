@@ -156,31 +156,65 @@ void gtx_programs_destroy(gtx_renderer *renderer)
             renderer->gl.DeleteProgram(renderer->programs[i].object);
 }
 
-gtx_result gtx_shading_create(gtx_renderer *renderer, const char *text, gtx_shading **out,
-                              gtx_error *error)
+gtx_result gtx_shading_begin(gtx_renderer *renderer, const char *text, gtx_shading **out,
+                             gtx_error *error)
 {
     if (!renderer || !text || !out)
         return gtx_fail(error, GTX_ERROR_ARGUMENT, "a shading needs a renderer and a main");
     *out = NULL;
     gtx_shading *shading = gtx_alloc_array(&renderer->allocator, 1, sizeof *shading);
-    if (!shading)
+    if (shading) {
+        shading->text_size = strlen(text) + 1;
+        shading->text = gtx_alloc_raw(&renderer->allocator, shading->text_size, 1);
+    }
+    if (!shading || !shading->text) {
+        gtx_shading_destroy(renderer, shading);
         return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for a shading");
+    }
+    memcpy(shading->text, text, shading->text_size);
     /* Mains that do not say so may read what tiles do not have. */
     const bool tiles = renderer->gl.TexBuffer && strstr(text, "#pragma geotex tiles");
     const bool vertices = strstr(text, "#pragma geotex vertices");
-    gtx_result result = GTX_OK;
-    for (int i = 0; i < OWN_TECHNIQUE_COUNT && !result; ++i) {
+    for (int i = 0; i < OWN_TECHNIQUE_COUNT; ++i) {
         const gtx_technique technique = (gtx_technique)(TECHNIQUE_OWN_CAST + i);
-        if ((technique != TECHNIQUE_OWN_TILES || tiles) &&
-            (technique != TECHNIQUE_OWN_LOD_LIT || vertices) &&
-            !gtx_is_displaced_otherwise(renderer, technique))
-            result = build(renderer, gtx_pipeline_of(technique, GTX_PASS_FORWARD, MATERIAL_MAPS),
-                           text, &shading->programs[i], error);
+        shading->has[i] = (technique != TECHNIQUE_OWN_TILES || tiles) &&
+                          (technique != TECHNIQUE_OWN_LOD_LIT || vertices) &&
+                          !gtx_is_displaced_otherwise(renderer, technique);
     }
+    *out = shading;
+    return GTX_OK;
+}
+
+gtx_result gtx_shading_compile(gtx_renderer *renderer, gtx_shading *shading, uint32_t techniques,
+                               gtx_error *error)
+{
+    gtx_result result = GTX_OK;
+    for (int i = 0; i < OWN_TECHNIQUE_COUNT && !result; ++i)
+        if (techniques >> i & 1 && shading->has[i] && !shading->programs[i].object)
+            result = build(renderer, gtx_pipeline_of((gtx_technique)(TECHNIQUE_OWN_CAST + i),
+                                                     GTX_PASS_FORWARD, MATERIAL_MAPS),
+                           shading->text, &shading->programs[i], error);
+    return result;
+}
+
+static void forget_text(const gtx_renderer *renderer, gtx_shading *shading)
+{
+    gtx_free_array(&renderer->allocator, shading->text, shading->text_size, 1);
+    shading->text = NULL;
+}
+
+gtx_result gtx_shading_create(gtx_renderer *renderer, const char *text, gtx_shading **out,
+                              gtx_error *error)
+{
+    gtx_result result = gtx_shading_begin(renderer, text, out, error);
     if (result)
-        gtx_shading_destroy(renderer, shading);
-    else
-        *out = shading;
+        return result;
+    result = gtx_shading_compile(renderer, *out, UINT32_MAX, error);
+    forget_text(renderer, *out);
+    if (result) {
+        gtx_shading_destroy(renderer, *out);
+        *out = NULL;
+    }
     return result;
 }
 
@@ -190,6 +224,7 @@ void gtx_shading_destroy(gtx_renderer *renderer, gtx_shading *shading)
         return;
     for (int i = 0; i < OWN_TECHNIQUE_COUNT; ++i)
         renderer->gl.DeleteProgram(shading->programs[i].object);
+    forget_text(renderer, shading);
     gtx_free_array(&renderer->allocator, shading, 1, sizeof *shading);
 }
 

@@ -20,14 +20,26 @@ typedef struct gtx_program {
 enum { OWN_TECHNIQUE_COUNT = TECHNIQUE_COUNT - TECHNIQUE_OWN_CAST };
 
 struct gtx_shading {
-    /* From TECHNIQUE_OWN_CAST on; without an object where the context or the main has none. */
+    /* From TECHNIQUE_OWN_CAST on; without an object where the context or the main has none, or
+     * where it is not compiled yet. */
     gtx_program programs[OWN_TECHNIQUE_COUNT];
+    bool has[OWN_TECHNIQUE_COUNT];
+    char *text;               /* until all is compiled */
+    size_t text_size;
 };
 
 static inline bool gtx_shading_has(const gtx_shading *shading, gtx_technique technique)
 {
-    return shading->programs[technique - TECHNIQUE_OWN_CAST].object != 0;
+    return shading->has[technique - TECHNIQUE_OWN_CAST];
 }
+
+/* gtx_shading_create in two steps: with nothing compiled, and some of it, from bit 0 for
+ * TECHNIQUE_OWN_CAST on. Draws that lack some draw nothing from there on, and
+ * gtx_renderer.lacking tells what. */
+gtx_result gtx_shading_begin(gtx_renderer *renderer, const char *text, gtx_shading **out,
+                             gtx_error *error);
+gtx_result gtx_shading_compile(gtx_renderer *renderer, gtx_shading *shading, uint32_t techniques,
+                               gtx_error *error);
 
 /* Compiles what a technique needs for a pass, with any material. Errors: SHADER. */
 gtx_result gtx_programs_need(gtx_renderer *renderer, gtx_technique technique, gtx_pass pass,

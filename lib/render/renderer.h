@@ -29,6 +29,7 @@ struct gtx_renderer {
     gtx_program programs[GTX_PIPELINE_COUNT]; /* 0: not needed yet */
     gl_uint vertex_array, instance_buffer, picked_buffer;
     gtx_planner planner;
+    uint32_t lacking;         /* of the shading of the last draw, what is still to be compiled */
     gtx_tile_stream tile_stream;
     gtx_grid_stream grid_stream;
     gtx_block_stream block_stream;

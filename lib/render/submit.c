@@ -182,10 +182,15 @@ void gtx_submit_draw(const gtx_frame_draw *draw, void *user)
                        draw->instance_count == 1;
     const bool single = depth || technique == TECHNIQUE_OWN_LOD_LIT;
     const gtx_instance_data *placed = &renderer->planner.instances[draw->first_instance];
+    const gtx_program *program = program_of(s, draw, depth);
+    if (!program->object)
+        s->renderer->lacking |= 1u << (technique - TECHNIQUE_OWN_CAST);
+    if (renderer->lacking)
+        return;
     if (draw->model != s->model)
         bind_textures(&renderer->gl, draw->model);
     s->model = draw->model;
-    use_program(s, program_of(s, draw, depth), draw->constants);
+    use_program(s, program, draw->constants);
     cull(s, draw);
     if (s->view->flags & GTX_VIEW_BY_SAMPLES && renderer->gl.MinSampleShading)
         shade_samples(&renderer->gl, draw->vertices == GTX_BUFFER_PROXY_VERTICES);

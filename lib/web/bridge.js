@@ -38,9 +38,10 @@ ${tone ? ShaderChunk.tonemapping_pars_fragment : ''}
 ${fog ? 'uniform vec3 web_fog_color, web_fog_reach; uniform vec4 web_depth_row;' : ''}
 vec3 web_shade(gtx_material m, vec3 n, vec3 eye, vec3 light, float deviation)
 {
-#ifdef GTX_OWN_VERTICES /* the same of what is rough and no metal */
+#if defined(GTX_OWN_VERTICES) || ${+!material} /* the same of what is rough and no metal */
     float nl = max(dot(n, light), 0.0), f = 0.04 + 0.96 * gtx_half_way(n, eye, light).w;
-    return (m.color * (1.0 - f) + f * 0.5 / max(nl + max(dot(n, eye), 1e-3), 1e-6)) * nl;
+    return m.color * ((1.0 - f) * gtx_diffuse(n, eye, light, deviation)) +
+           f * 0.5 * nl / max(nl + max(dot(n, eye), 1e-3), 1e-6);
 #else
     return gtx_shade(m, n, eye, light, 0.0, deviation);
 #endif
@@ -115,7 +116,7 @@ export class Bridge {
   shadingOf(look) {
     const key = JSON.stringify(look);
     if (!this.#shadings.has(key))
-      this.#shadings.set(key, this.geotex.shading(shadingText(look)));
+      this.#shadings.set(key, this.geotex.shading(shadingText(look), true));
     return this.#shadings.get(key);
   }
 

@@ -5,7 +5,7 @@
 #include "asset/read.h"
 #include "base/alloc.h"
 #include "frame/model.h"
-#include "render/gl.h"
+#include "render/renderer.h"
 
 #include <geotex/render.h>
 
@@ -84,10 +84,11 @@ WEB_API void gtxw_renderer_destroy(gtx_renderer *renderer)
     gtx_renderer_destroy(renderer);
 }
 
-WEB_API gtx_shading *gtxw_shading_create(gtx_renderer *renderer, const char *text)
+/* With `later` its programs are compiled when something is first drawn by them. */
+WEB_API gtx_shading *gtxw_shading_create(gtx_renderer *renderer, const char *text, int later)
 {
     gtx_shading *shading = NULL;
-    gtx_shading_create(renderer, text, &shading, gtxw_begin());
+    (later ? gtx_shading_begin : gtx_shading_create)(renderer, text, &shading, gtxw_begin());
     return shading;
 }
 
@@ -219,9 +220,10 @@ WEB_API double gtxw_model_gpu_bytes(const gtx_model *model)
 enum { MAX_AT_ONCE = 256 };
 
 /* `view`: both matrices, light and ambient, max_error. `whole`: method, flags, width, height, pass,
- * level. An instance has 20 numbers: its matrix and its tint. Returns a gtx_result. */
+ * level. An instance has 20 numbers: its matrix and its tint. Returns a gtx_result, or -1 where
+ * the shading has programs now that it lacked: then all is to be drawn again. */
 WEB_API int gtxw_draw(gtx_renderer *renderer, const float *view, const uint32_t *whole,
-                      const gtx_shading *shading, gtx_model *const *models, const float *instances,
+                      gtx_shading *shading, gtx_model *const *models, const float *instances,
                       uint32_t count)
 {
     static gtx_instance placed[MAX_AT_ONCE];
@@ -231,6 +233,7 @@ WEB_API int gtxw_draw(gtx_renderer *renderer, const float *view, const uint32_t 
     memcpy(v.view, view, sizeof v.view);
     memcpy(v.projection, view + 16, sizeof v.projection);
     memcpy(v.light_direction, view + 32, sizeof v.light_direction);
+    uint32_t lacking = 0;
     for (uint32_t first = 0; first < count; first += MAX_AT_ONCE) {
         uint32_t n = count - first < MAX_AT_ONCE ? count - first : MAX_AT_ONCE;
         for (uint32_t i = 0; i < n; ++i) {
@@ -241,6 +244,9 @@ WEB_API int gtxw_draw(gtx_renderer *renderer, const float *view, const uint32_t 
         }
         if (gtx_draw(renderer, &v, placed, n, gtxw_begin()))
             return (int)last_error.result;
+        lacking |= renderer->lacking;
     }
-    return 0;
+    if (lacking && gtx_shading_compile(renderer, shading, lacking, gtxw_begin()))
+        return (int)last_error.result;
+    return lacking ? -1 : 0;
 }

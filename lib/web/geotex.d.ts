@@ -69,7 +69,8 @@ export class Model {
   dispose(): void;
 }
 
-/** Fragment mains of your own: GLSL as gtx_shading_create takes it. */
+/** Fragment mains of your own: GLSL as gtx_shading_create takes it. With `later` there is a program
+ * only once something is drawn by it, and what is wrong with it is told by that draw. */
 export class Shading {
   readonly programs: WebGLProgram[];
   set(uniforms: Record<string, number | Numbers | {int: number} | {vec3: Numbers} |
@@ -130,7 +131,7 @@ export class Geotex {
   load(bytes: ArrayBuffer | ArrayBufferView,
        how: {prefix: true, pieces?: {first: number, bytes: Uint8Array}[]}):
       Promise<{asset: Asset | null, model: Model | null, needed: number, fileBytes: number}>;
-  shading(text: string): Shading;
+  shading(text: string, later?: boolean): Shading;
   draw(view: View, instances: Instance[]): void;
   dispose(): void;
 }

@@ -161,8 +161,8 @@ export class Model {
 
 /* Fragment mains of the page's own (gtx_shading_create). */
 export class Shading {
-  constructor(geotex, text) {
-    Object.assign(this, {geotex, text, handle: 0});
+  constructor(geotex, text, later = false) {
+    Object.assign(this, {geotex, text, later, handle: 0, values: {}});
     this.create();
   }
 
@@ -170,21 +170,32 @@ export class Shading {
     const g = this.geotex, core = g.core, size = core.lengthBytesUTF8(this.text) + 1;
     const pointer = core._malloc(size);
     core.stringToUTF8(this.text, pointer, size);
-    this.handle = g.around(() => core._gtxw_shading_create(g.renderer, pointer));
+    this.handle = g.around(() => core._gtxw_shading_create(g.renderer, pointer, this.later));
     core._free(pointer);
     g.must(this.handle);
-    this.programs = [];
-    for (let name; (name = core._gtxw_shading_program(this.handle, this.programs.length));)
-      this.programs.push(core.GL.programs[name]);
-    this.places = this.programs.map(() => ({}));
+    this.places = new Map();
+    this.list();
+  }
+
+  get programs() {
+    return [...this.places.keys()];
+  }
+
+  /* Finds its programs, which have the uniforms that were set. */
+  list() {
+    const {core} = this.geotex;
+    for (let i = 0, name; (name = core._gtxw_shading_program(this.handle, i)); ++i)
+      if (!this.places.has(core.GL.programs[name]))
+        this.places.set(core.GL.programs[name], {});
+    this.set(this.values);
   }
 
   /* Numbers and rows of 2, 3, 4 or 16 of them; arrays of vec3 and mat4 as {vec3: [...]}, {mat4:
    * [...]}; samplers and other whole numbers as {int: n}. */
   set(uniforms) {
     const gl = this.geotex.gl, before = gl.getParameter(gl.CURRENT_PROGRAM);
-    this.programs.forEach((program, i) => {
-      const places = this.places[i];
+    Object.assign(this.values, uniforms);
+    this.places.forEach((places, program) => {
       gl.useProgram(program);
       for (const [name, value] of Object.entries(uniforms)) {
         const at = places[name] ??= gl.getUniformLocation(program, name);
@@ -329,8 +340,9 @@ export class Geotex {
     return model;
   }
 
-  shading(text) {
-    const shading = new Shading(this, text);
+  /* `later`: of its programs, those that are drawn by are compiled when they first are. */
+  shading(text, later) {
+    const shading = new Shading(this, text, later);
     this.shadings.add(shading);
     return shading;
   }
@@ -349,11 +361,16 @@ export class Geotex {
     const whole = [view.method ?? Method.AUTO, view.flags ?? 0, view.width ?? 0, view.height ?? 0,
                    view.pass ?? Pass.FORWARD, view.level ?? 0, ...handles];
     const shading = view.shading?.handle ?? 0;
-    this.withNumbers(floats, (f, w) => {
-      if (this.around(() => this.core._gtxw_draw(this.renderer, f, w, shading, w + 24, f + 148,
-                                                 handles.length), view.known ?? {}))
-        this.must(0);
-    }, whole);
+    const draw = () => this.withNumbers(floats, (f, w) => this.around(() =>
+      this.core._gtxw_draw(this.renderer, f, w, shading, w + 24, f + 148, handles.length),
+      view.known ?? {}), whole);
+    let result = draw();
+    if (result < 0) {
+      view.shading.list();
+      result = draw();
+    }
+    if (result)
+      this.must(0);
   }
 
   dispose() {

@@ -3,6 +3,7 @@ import * as THREE from 'three';
 import {Geotex, GeotexError, Method, Pass} from 'geotex';
 import {GeotexLoader, GeotexModel} from 'geotex/three';
 import {facing} from './facing.js';
+import {shadings} from './shadings.js';
 import {streaming} from './streaming.js';
 import {worlds} from './worlds.js';
 
@@ -389,8 +390,8 @@ Object.assign(checks, {
   },
 });
 
-const kit = {expect, address, context, clear, cameraOf, read, covered, apart, WIDTH, HEIGHT};
-Object.assign(checks, facing(kit), streaming(kit), worlds(kit));
+const kit = {expect, address, context, clear, cameraOf, viewOf, read, covered, apart, WIDTH, HEIGHT};
+Object.assign(checks, facing(kit), shadings(kit), streaming(kit), worlds(kit));
 window.checks = checks;
 window.run = async (name) => {
   try {
