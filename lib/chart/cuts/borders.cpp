@@ -61,8 +61,10 @@ void move_borders(const Surface &surface, size_t count, Vector<uint32_t> &labels
 {
     const auto &neighbours = surface.whole.neighbours;
     for (int refit = 0; refit < REFITS; ++refit) {
-        const Vector<Vec3f> proxies = fit_normals(surface, labels, count, task);
         Vector<uint32_t> border = border_of(surface, labels, task);
+        if (border.empty())
+            break;
+        const Vector<Vec3f> proxies = fit_normals(surface, labels, count, task);
         const float straightness = refit < REFITS - STRAIGHT_REFITS ? 0 : STRAIGHTNESS;
         auto liking = [&](uint32_t t, uint32_t label) {
             int alike = 0;
