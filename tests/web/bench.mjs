@@ -32,16 +32,16 @@ try {
       const m = await page.evaluate((...a) => measure(...a), kind, `/folder/${name}.${end}`, 10e6, error,
                                     `/folder/${name}.drc`);
       least = Math.min(least, m.least);
-      const seconds = (ms) => (ms / 1000).toFixed(2);
+      const seconds = (ms) => (ms / 1000).toFixed(3);
       console.log(`| ${name} | ${title} | ${Math.round(size / 1000)} |` +
                   ` ${Math.round((m.bytes ?? size) / 1000)} | ${seconds(m.first)} | ${seconds(m.full)} |` +
-                  ` ${m.task.toFixed(0)} | ${m.frame.toFixed(0)} | ${(m.memory / 1e6).toFixed(1)} |` +
+                  ` ${m.task.toFixed(0)} | ${m.frame.toFixed(1)} | ${(m.memory / 1e6).toFixed(1)} |` +
                   ` ${m.iou.toFixed(4)} | ${m.psnr?.toFixed(1) ?? ''} | ${m.wholePsnr?.toFixed(1) ?? ''} |`);
       const picture = await page.evaluate(() => shot());
       await writeFile(join(folder, `${name}-${kind}-${error ?? 0}.png`),
                       Buffer.from(picture.slice(picture.indexOf(',') + 1), 'base64'));
     }
-    console.log(`| ${name} | a ball of as many pixels | | | | | | ${least.toFixed(0)} | | | | |`);
+    console.log(`| ${name} | a ball of as many pixels | | | | | | ${least.toFixed(1)} | | | | |`);
   }
 } finally {
   await close();
