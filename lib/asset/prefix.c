@@ -82,12 +82,10 @@ static bool is_allowed(beginning *b, uint64_t memory)
     return true;
 }
 
-/* Of all parts as they come out, and of patches in any case. */
+/* Of all parts as they come out. */
 static uint64_t source_bytes(const beginning *b)
 {
     uint64_t bytes = sizeof(gtx_asset);
-    if (!b->has.patches)
-        bytes += sizeof(gtx_patch) * (uint64_t)b->layout.info.patch_count;
     for (uint32_t i = 0; i < b->has.part_count; ++i)
         bytes += b->has.parts[i].size;
     return bytes;
@@ -134,20 +132,27 @@ static void decode(beginning *b)
     }
 }
 
+/* Of patches that are laid, for they have not come. */
+static uint64_t laid_bytes(const beginning *b)
+{
+    return b->has.patches ? 0 : sizeof(gtx_patch) * (uint64_t)b->layout.info.patch_count;
+}
+
 /* Patches for an LOD mesh that came without. False where there are none whose floats are fine
  * enough: then the file's own are waited for. */
 static bool sketch(beginning *b)
 {
     gtx_check quiet = {0};
-    if (!gtx_sketch_patches(b->source)) {
-        gtx_check_fail(&b->check, GTX_ERROR_MEMORY, "out of memory for the beginning of a file");
+    if (!is_allowed(b, source_bytes(b) + laid_bytes(b) + gtx_occupancy_size(&b->layout.info)))
         return false;
-    }
-    gtx_check_patches(&quiet, b->source, 0, &b->occupancy);
+    if (gtx_sketch_patches(b->source))
+        gtx_check_patches(&quiet, b->source, 0, &b->occupancy);
     gtx_occupancy_free(&b->occupancy, &b->options->allocator);
-    if (!gtx_check_over(&quiet))
+    if (!b->source->patches || quiet.failed)
+        gtx_check_fail(&b->check, GTX_ERROR_MEMORY, "out of memory for the beginning of a file");
+    else if (!quiet.broken)
         gtx_check_lod(&quiet, b->source, 0, 0);
-    return !gtx_check_over(&quiet);
+    return !gtx_check_over(&quiet) && !gtx_check_over(&b->check);
 }
 
 /* The preview's, and what making it takes. */
@@ -182,7 +187,7 @@ static gtx_asset *preview(beginning *b)
     const bool images = b->info.has_color || b->info.has_material || b->info.has_emission;
     if (mesh.normals && !images && !b->has.normals)
         shape_preview(b, gtx_preview_shift(&b->layout.info, LIT_TEXELS * mesh.triangle_count));
-    if (!is_allowed(b, source_bytes(b) + preview_bytes(b, &mesh)))
+    if (!is_allowed(b, source_bytes(b) + laid_bytes(b) + preview_bytes(b, &mesh)))
         return NULL;
     gtx_asset *out = gtx_preview_new(b->source, &b->info, b->shift, b->has.images);
     if (!out)
@@ -214,8 +219,9 @@ static gtx_asset *read_parts(beginning *b)
     if (b->decoding.zstd && !gtx_has_zstd())
         gtx_check_fail(&b->check, GTX_ERROR_UNSUPPORTED,
                        "the file is compressed and this build has no zstd");
+    const uint64_t checked = b->has.patches ? gtx_occupancy_size(&b->layout.info) : 0;
     if (gtx_check_over(&b->check) ||
-        !is_allowed(b, source_bytes(b) + b->decoding.size + gtx_occupancy_size(&b->layout.info)))
+        !is_allowed(b, source_bytes(b) + b->decoding.size + checked))
         return NULL;
     gtx_asset *out = NULL;
     if (!make_source(b) || !gtx_decoding_begin(&b->decoding, b->source, b->has.data))
