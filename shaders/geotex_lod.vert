@@ -168,7 +168,7 @@ void main()
     vec3 eye = gtx_view_eye(gtx_object_x, gtx_object_y, gtx_object_z);
     vec3 ray = normalize(gtx_to_world(object.xyz * gtx_depth.w - eye));
 #ifdef GTX_OWN_VERTICES
-    gtx_lit = gtx_at_vertex(world, n, -ray, gtx_tint);
+    gtx_lit = gtx_at_vertex(world, n, -ray, gtx_tint, GTX_LEAST_DEVIATION);
 #else
     vec3 root = pow(max(gtx_tint.rgb, 0.0), vec3(1.0 / 2.4));
     gtx_lit = vec4(gtx_shown_to(n, -ray, root), gtx_tint.a);
@@ -235,6 +235,10 @@ void main()
 #ifdef GTX_MATERIALS
     if (gtx_maps.y > 0.0)
         gtx_lit *= textureLod(gtx_colors, vec3(place, page), level);
+#endif
+#ifdef GTX_OWN_VERTICES
+    gtx_lit = gtx_at_vertex(world, n, -ray, gtx_lit, deviation);
+#elif defined(GTX_MATERIALS)
     gtx_material material = gtx_material_at(vec3(place, page), level, gtx_lit.rgb);
     gtx_lit.rgb = gtx_shown(gtx_shade(material, n, -ray, gtx_light.xyz, gtx_light.w, deviation));
 #else

@@ -317,7 +317,7 @@ GTX_API gtx_result gtx_model_edit(gtx_model *model, const gtx_asset *edited, uin
 
 /* ---- pipelines ----------------------------------------------------------------------------- */
 
-enum { GTX_PIPELINE_COUNT = 416, GTX_MAX_SHADER_TEXTS = 16 };
+enum { GTX_PIPELINE_COUNT = 448, GTX_MAX_SHADER_TEXTS = 16 };
 
 typedef struct gtx_pipeline {
     gtx_pass pass;

@@ -97,8 +97,10 @@ GTX_API void gtx_model_destroy(gtx_renderer *renderer, gtx_model *model);
  * where the renderer does so and the view asks for it (GTX_VIEW_SHADING_BY_TILES). A line `#pragma
  * geotex vertices` promises that the main discards nothing that is found and that, where
  * GTX_OWN_VERTICES is defined, the text is `vec4 gtx_at_vertex(vec3 point, vec3 normal, vec3 eye,
- * vec4 tint)` and what that calls, all in world space, which gives what the main writes: LOD meshes
- * that have normals are then shaded at their vertices, in the vertex shader. Compilers'
+ * vec4 albedo, float deviation)` and what that calls, which gives what the main writes (all in
+ * world space; `normal` is turned to the eye, which is a unit vector, and `deviation` that of a
+ * gtx_surface): LOD meshes that have normals, and fine or even triangles of displaced grids, are
+ * then shaded at their vertices, in the vertex shader, where a model has no materials. Compilers'
  * messages number its lines from 1, as string 1. The shading is allocated from the renderer's
  * allocator; free it with gtx_shading_destroy.
  * Errors: ARGUMENT, MEMORY, SHADER (the renderer's log says why). */
@@ -109,7 +111,7 @@ GTX_API void gtx_shading_destroy(gtx_renderer *renderer, gtx_shading *shading);
 /* The GL names of the shading's programs, one for each way in which something is drawn, for setting
  * the engine's own uniforms between draws: in all of them. The first is that which casts in
  * fragments. Returns how many they are. */
-enum { GTX_SHADING_PROGRAMS = 8 };
+enum { GTX_SHADING_PROGRAMS = 10 };
 GTX_API uint32_t gtx_shading_programs(const gtx_shading *shading,
                                       uint32_t out[GTX_SHADING_PROGRAMS]);
 

@@ -189,7 +189,7 @@ static void draw_grids(const gtx_draw_call *call, const run *r, uint32_t instanc
         if (!all.count)
             continue;
         gtx_frame_draw draw =
-            draw_of(call, r, gtx_grid_technique(call, looks, keeps_angles), instance, 1);
+            draw_of(call, r, gtx_grid_technique(call, r->model, looks, keeps_angles), instance, 1);
         draw.vertices = GTX_BUFFER_GRID_VERTICES;
         draw.indices = GTX_BUFFER_GRID_INDICES;
         draw.ranges = &all;

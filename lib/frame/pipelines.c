@@ -23,6 +23,7 @@ typedef struct technique_files {
 #define LIT "#define GTX_LIT\n"
 #define SINGLE "#define GTX_SINGLE\n"
 #define NORMALS "#define GTX_VERTEX_NORMALS\n"
+#define OWN_VERTICES LIT "#define GTX_OWN_VERTICES\n"
 #define BLOCKS GRID "#define GTX_BLOCKS\n"
 #define ALL_MAPS {MATERIAL_MAPS, MATERIAL_MAPS, MATERIAL_MAPS, MATERIAL_MAPS}
 #define ALL_BUT_CONSTANT {MATERIAL_NONE, MATERIAL_COLORS, MATERIAL_MAPS, MATERIAL_MAPS}
@@ -91,12 +92,18 @@ static const technique_files techniques[TECHNIQUE_COUNT] = {
                                    "#define GTX_LOD\n" NORMALS,
                                    {"geotex_lod_fragment.glsl", "geotex_rays.glsl"}, NULL,
                                    ALL_MAPS},
+    [TECHNIQUE_OWN_LOD_LIT] = {"lit LOD mesh, own", "geotex_lod.vert",
+                               OWN_VERTICES SINGLE, {NULL}, "geotex_lod_lit.frag", ALL_MAPS},
     [TECHNIQUE_OWN_GRID] = {"grid, own", "geotex_lod.vert", "#define GTX_LOD\n" GRID TRIMMED,
                             {"geotex_lod_fragment.glsl", "geotex_rays.glsl"}, NULL, ALL_MAPS},
     [TECHNIQUE_OWN_GRID_NORMALS] = {"whole grid with normals, own", "geotex_lod.vert",
                                     "#define GTX_LOD\n" GRID NORMALS,
                                     {"geotex_lod_fragment.glsl", "geotex_rays.glsl"}, NULL,
                                     ALL_MAPS},
+    [TECHNIQUE_OWN_GRID_LIT] = {"lit grid, own", "geotex_lod.vert", GRID TRIMMED OWN_VERTICES,
+                                {NULL}, "geotex_lit.frag", ALL_MAPS},
+    [TECHNIQUE_OWN_GRID_WHOLE_LIT] = {"whole lit grid, own", "geotex_lod.vert",
+                                      GRID OWN_VERTICES, {NULL}, "geotex_lit.frag", ALL_MAPS},
     [TECHNIQUE_OWN_BLOCKS] = {"blocks, own", "geotex_lod.vert",
                               "#define GTX_LOD\n" BLOCKS TRIMMED,
                               {"geotex_lod_fragment.glsl", "geotex_rays.glsl"}, NULL, ALL_MAPS},
@@ -104,9 +111,6 @@ static const technique_files techniques[TECHNIQUE_COUNT] = {
                              {"geotex_cast.glsl", "geotex_fragment.glsl", "geotex_tiles.glsl",
                               "geotex_rays.glsl"},
                              NULL, ALL_MAPS},
-    [TECHNIQUE_OWN_LOD_LIT] = {"lit LOD mesh, own", "geotex_lod.vert",
-                               LIT SINGLE "#define GTX_OWN_VERTICES\n", {NULL},
-                               "geotex_lod_lit.frag", ALL_MAPS},
 };
 
 static const struct {
@@ -175,13 +179,18 @@ gtx_technique gtx_pipeline_technique(uint32_t pipeline)
 bool gtx_technique_is_grid(gtx_technique technique)
 {
     return (technique >= TECHNIQUE_GRID && technique <= TECHNIQUE_GRID_WHOLE_LIT) ||
-           technique == TECHNIQUE_OWN_GRID || technique == TECHNIQUE_OWN_GRID_NORMALS;
+           (technique >= TECHNIQUE_OWN_GRID && technique <= TECHNIQUE_OWN_GRID_WHOLE_LIT);
 }
 
 bool gtx_technique_is_blocks(gtx_technique technique)
 {
     return (technique >= TECHNIQUE_BLOCKS && technique <= TECHNIQUE_BLOCKS_WHOLE_FRONT) ||
            technique == TECHNIQUE_OWN_BLOCKS;
+}
+
+bool gtx_technique_is_at_vertices(gtx_technique technique)
+{
+    return is_own(technique) && techniques[technique].forward;
 }
 
 bool gtx_technique_is_forward(gtx_technique technique)
@@ -204,10 +213,8 @@ static bool is_made(uint32_t pipeline)
 
 static bool is_lod(gtx_technique technique)
 {
-    return technique == TECHNIQUE_LOD || technique == TECHNIQUE_LOD_FRONT ||
-           technique == TECHNIQUE_LOD_SINGLE ||
-           technique == TECHNIQUE_LOD_LIT || technique == TECHNIQUE_OWN_LOD ||
-           technique == TECHNIQUE_OWN_LOD_NORMALS || technique == TECHNIQUE_OWN_LOD_LIT;
+    return (technique >= TECHNIQUE_LOD && technique <= TECHNIQUE_LOD_LIT) ||
+           (technique >= TECHNIQUE_OWN_LOD && technique <= TECHNIQUE_OWN_LOD_LIT);
 }
 
 static bool is_cast(gtx_technique technique)
@@ -226,7 +233,7 @@ uint32_t gtx_pipeline_get(uint32_t pipeline, gtx_pipeline *out)
     const recipe r = recipe_of(pipeline);
     const bool made = is_made(pipeline) &&
                       r.technique != TECHNIQUE_LOD_SINGLE && /* OpenGL's alone */
-                      r.technique != TECHNIQUE_OWN_LOD_LIT;
+                      !gtx_technique_is_at_vertices(r.technique);
     if (!out)
         return 0;
     *out = (gtx_pipeline){GTX_PASS_FORWARD, GTX_BUFFER_PROXY_VERTICES, 0, 0};
@@ -288,7 +295,7 @@ static void add_own(source *s, const char *own_main)
 static void add_vertex(source *s, const recipe *r, const char *own_main)
 {
     const gtx_technique by = r->technique;
-    const bool own = by == TECHNIQUE_OWN_LOD_LIT;
+    const bool own = gtx_technique_is_at_vertices(by);
     const bool is_lit = own || by == TECHNIQUE_GRID_LIT || by == TECHNIQUE_GRID_WHOLE_LIT;
     if (is_lit && materials[r->material].file) {
         add_file(s, "geotex_surface.glsl");

@@ -29,12 +29,13 @@ typedef enum gtx_technique {
     TECHNIQUE_OWN_CAST,       /* by an engine's own main */
     TECHNIQUE_OWN_LOD,
     TECHNIQUE_OWN_LOD_NORMALS,  /* with those of vertices; both sides in one pass */
+    TECHNIQUE_OWN_LOD_LIT,    /* with colours of vertices: front faces alone of one instance */
     TECHNIQUE_OWN_GRID,
     TECHNIQUE_OWN_GRID_NORMALS, /* those that show whole, with normals of vertices */
+    TECHNIQUE_OWN_GRID_LIT,     /* with colours of vertices */
+    TECHNIQUE_OWN_GRID_WHOLE_LIT,
     TECHNIQUE_OWN_BLOCKS,
     TECHNIQUE_OWN_TILES,
-    TECHNIQUE_OWN_LOD_LIT,    /* front faces alone of one instance, with colours of
-                                 vertices */
     TECHNIQUE_COUNT
 } gtx_technique;
 
@@ -55,6 +56,8 @@ gtx_technique gtx_pipeline_technique(uint32_t pipeline);
 /* Whether it displaces grids on the CPU, or blocks on the GPU. */
 bool gtx_technique_is_grid(gtx_technique technique);
 bool gtx_technique_is_blocks(gtx_technique technique);
+/* Whether an engine's own text gives colours at vertices. */
+bool gtx_technique_is_at_vertices(gtx_technique technique);
 /* Whether a technique has a forward pass. */
 bool gtx_technique_is_forward(gtx_technique technique);
 void gtx_pipeline_label(uint32_t pipeline, char label[GTX_MAX_LABEL]);

@@ -41,7 +41,8 @@ gtx_technique gtx_lod_technique(const gtx_draw_call *call, const gtx_model *mode
     return lit ? TECHNIQUE_LOD_LIT : front ? TECHNIQUE_LOD_FRONT : TECHNIQUE_LOD;
 }
 
-gtx_technique gtx_grid_technique(const gtx_draw_call *call, uint32_t looks, bool keeps_angles)
+gtx_technique gtx_grid_technique(const gtx_draw_call *call, const gtx_model *model, uint32_t looks,
+                                 bool keeps_angles)
 {
     static const gtx_technique techniques[2][2] = {
         {TECHNIQUE_GRID_WHOLE, TECHNIQUE_GRID_WHOLE_FRONT},
@@ -49,6 +50,10 @@ gtx_technique gtx_grid_technique(const gtx_draw_call *call, uint32_t looks, bool
     const bool forward = call->view->pass == GTX_PASS_FORWARD, whole = !(looks & GTX_GRID_TRIMMED);
     const bool front = forward && keeps_angles && !(looks & GTX_GRID_BEHIND);
     const bool lit = forward && !(looks & GTX_GRID_MAPPED);
+    const gtx_material_kind material = gtx_material_of(model);
+    const bool albedo_alone = material == MATERIAL_NONE || material == MATERIAL_COLORS;
+    if (gtx_is_own(call) && lit && call->planner->own_vertices && albedo_alone)
+        return whole ? TECHNIQUE_OWN_GRID_WHOLE_LIT : TECHNIQUE_OWN_GRID_LIT;
     if (gtx_is_own(call))
         return lit && whole ? TECHNIQUE_OWN_GRID_NORMALS : TECHNIQUE_OWN_GRID;
     if (lit)

@@ -18,7 +18,8 @@ gtx_technique gtx_cast_technique(const gtx_draw_call *call, bool box);
 gtx_technique gtx_lod_technique(const gtx_draw_call *call, const gtx_model *model, uint32_t level,
                                 bool front);
 /* `looks` of GTX_GRID_..., and of GTX_BLOCKS_.... */
-gtx_technique gtx_grid_technique(const gtx_draw_call *call, uint32_t looks, bool keeps_angles);
+gtx_technique gtx_grid_technique(const gtx_draw_call *call, const gtx_model *model, uint32_t looks,
+                                 bool keeps_angles);
 gtx_technique gtx_block_technique(const gtx_draw_call *call, uint32_t looks, bool keeps_angles);
 
 #endif

@@ -178,7 +178,7 @@ gtx_result gtx_shading_begin(gtx_renderer *renderer, const char *text, gtx_shadi
     for (int i = 0; i < OWN_TECHNIQUE_COUNT; ++i) {
         const gtx_technique technique = (gtx_technique)(TECHNIQUE_OWN_CAST + i);
         shading->has[i] = (technique != TECHNIQUE_OWN_TILES || tiles) &&
-                          (technique != TECHNIQUE_OWN_LOD_LIT || vertices) &&
+                          (!gtx_technique_is_at_vertices(technique) || vertices) &&
                           !gtx_is_displaced_otherwise(renderer, technique);
     }
     *out = shading;

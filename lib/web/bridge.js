@@ -70,9 +70,9 @@ gtx_material web_plain(vec3 color)
     return gtx_material(color, vec3(0.0), 1.0, 1.0, 0.0, 1.0);
 }
 #ifdef GTX_OWN_VERTICES
-vec4 gtx_at_vertex(vec3 point, vec3 n, vec3 eye, vec4 tint)
+vec4 gtx_at_vertex(vec3 point, vec3 n, vec3 eye, vec4 albedo, float deviation)
 {
-    return web_shown(point, n, eye, web_plain(tint.rgb), tint.a, GTX_LEAST_DEVIATION);
+    return web_shown(point, n, eye, web_plain(albedo.rgb), albedo.a, deviation);
 }
 #else
 layout(location = 0) out vec4 web_out;

@@ -5,19 +5,30 @@ namespace gtx {
 
 static const char own_main[] =
     "#pragma geotex tiles\n"
-    "layout(location = 0) out vec4 color;\n"
+    "#pragma geotex vertices\n"
     "uniform vec4 own_light;\n" /* towards it, and the share without it */
+    "vec3 shown(vec3 albedo, vec3 n, vec3 eye, float deviation)\n"
+    "{\n"
+    "    float light = gtx_diffuse(n, eye, own_light.xyz, deviation);\n"
+    "    return gtx_to_srgb(albedo * (own_light.w + (1.0 - own_light.w) * light));\n"
+    "}\n"
+    "#ifdef GTX_OWN_VERTICES\n"
+    "vec4 gtx_at_vertex(vec3 point, vec3 normal, vec3 eye, vec4 albedo, float deviation)\n"
+    "{\n"
+    "    return vec4(shown(albedo.rgb, normal, eye, deviation), 1.0);\n"
+    "}\n"
+    "#else\n"
+    "layout(location = 0) out vec4 color;\n"
     "void main()\n"
     "{\n"
     "    gtx_surface s;\n"
     "    if (!gtx_find(s))\n"
     "        discard;\n"
-    "    vec3 n = gtx_world_normal(s), albedo = gtx_albedo(s).rgb;\n"
-    "    float light = gtx_diffuse(n, -gtx_world_ray(s), own_light.xyz, s.deviation);\n"
-    "    float share = own_light.w + (1.0 - own_light.w) * light;\n"
-    "    color = vec4(gtx_to_srgb(albedo * share), 1.0);\n"
+    "    color = vec4(shown(gtx_albedo(s).rgb, gtx_world_normal(s), -gtx_world_ray(s),\n"
+    "                       s.deviation), 1.0);\n"
     "    gtx_write_depth(s);\n"
-    "}\n";
+    "}\n"
+    "#endif\n";
 
 void BenchScene::shade_own(gtx_view &view)
 {
