@@ -1,4 +1,5 @@
-/* What documents tell people to run exists: verbs, their options, targets, samples, links. */
+/* What documents tell people to run exists: verbs, their options, targets, samples, links; and
+ * versions are today's. */
 #include "cli/command.h"
 
 #include <ctype.h>
@@ -152,11 +153,36 @@ static void what_documents_name_exists(void **state)
     }
 }
 
+/* The specification and the changelog are of the format that is written. */
+static void versions_agree(void **state)
+{
+    (void)state;
+    static const char *const places[][2] = {
+        {"format/gtx.md", "# The `.gtx` format, version %.*s\n"},
+        {"CHANGELOG.md", "Format %.*s ("}};
+    assert_int_equal(gtx("--version"), 0);
+    const char *format = strstr(output, "format ");
+    assert_non_null(format);
+    format += strlen("format ");
+    for (size_t i = 0; i < sizeof places / sizeof *places; ++i) {
+        static char text[4096];
+        char wanted[128];
+        FILE *file = fopen(places[i][0], "r");
+        assert_non_null(file);
+        text[fread(text, 1, sizeof text - 1, file)] = 0;
+        fclose(file);
+        snprintf(wanted, sizeof wanted, places[i][1], (int)strcspn(format, ","), format);
+        if (!strstr(text, wanted))
+            fail_msg("%s does not say: %s", places[i][0], wanted);
+    }
+}
+
 int main(void)
 {
     strcpy(folder, "/tmp");
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_documents_name_exists),
+        cmocka_unit_test(versions_agree),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
