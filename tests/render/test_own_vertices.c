@@ -7,53 +7,39 @@ static int open_for_grids(void **state)
     return open_stage_as(state, false);
 }
 
-#define PRAGMA "#pragma geotex vertices\n"
-#define AT_VERTEX "vec4 gtx_at_vertex(vec3 point, vec3 n, vec3 eye, vec4 albedo, float deviation)\n"
+/* A shading of two expressions: at vertices, of normal, eye, albedo and deviation; and of a
+ * fragment's surface s. */
+#define SHADING(functions, at_vertex, at_fragment)                                                 \
+    "#pragma geotex vertices\n" functions                                                          \
+    "#ifdef GTX_OWN_VERTICES\n"                                                                    \
+    "vec4 gtx_at_vertex(vec3 point, vec3 normal, vec3 eye, vec4 albedo, float deviation)\n"        \
+    "{\n"                                                                                          \
+    "    return " at_vertex ";\n"                                                                  \
+    "}\n"                                                                                          \
+    "#else\n"                                                                                      \
+    "layout(location = 0) out vec4 color;\n"                                                       \
+    "void main()\n"                                                                                \
+    "{\n"                                                                                          \
+    "    gtx_surface s;\n"                                                                         \
+    "    if (!gtx_find(s))\n"                                                                      \
+    "        discard;\n"                                                                           \
+    "    color = " at_fragment ";\n"                                                               \
+    "    gtx_write_depth(s);\n"                                                                    \
+    "}\n"                                                                                          \
+    "#endif\n"
 
 /* The stock shading, lit from the side. */
-static const char like_stock[] =
-    PRAGMA
+static const char like_stock[] = SHADING(
     "vec4 shown(vec4 albedo, vec3 n, vec3 eye, float deviation)\n"
     "{\n"
     "    float light = gtx_diffuse(n, eye, vec3(0.48, 0.6, 0.64), deviation);\n"
     "    return vec4(gtx_to_srgb(albedo.rgb * (0.2 + 0.8 * light)), albedo.a);\n"
-    "}\n"
-    "#ifdef GTX_OWN_VERTICES\n"
-    AT_VERTEX
-    "{\n"
-    "    return shown(albedo, n, eye, deviation);\n"
-    "}\n"
-    "#else\n"
-    "layout(location = 0) out vec4 color;\n"
-    "void main()\n"
-    "{\n"
-    "    gtx_surface s;\n"
-    "    if (!gtx_find(s))\n"
-    "        discard;\n"
-    "    color = shown(gtx_albedo(s), gtx_world_normal(s), -gtx_world_ray(s), s.deviation);\n"
-    "    gtx_write_depth(s);\n"
-    "}\n"
-    "#endif\n";
+    "}\n",
+    "shown(albedo, normal, eye, deviation)",
+    "shown(gtx_albedo(s), gtx_world_normal(s), -gtx_world_ray(s), s.deviation)");
 
 /* Blue at vertices, else red. */
-static const char telling[] =
-    PRAGMA
-    "#ifdef GTX_OWN_VERTICES\n"
-    AT_VERTEX
-    "{\n"
-    "    return vec4(0.0, 0.0, 1.0, 1.0);\n"
-    "}\n"
-    "#else\n"
-    "layout(location = 0) out vec4 color;\n"
-    "void main()\n"
-    "{\n"
-    "    gtx_surface s;\n"
-    "    if (!gtx_find(s))\n"
-    "        discard;\n"
-    "    color = vec4(1.0, 0.0, 0.0, 1.0);\n"
-    "    gtx_write_depth(s);\n"
-    "}\n"
-    "#endif\n";
+static const char telling[] = SHADING("", "vec4(0.0, 0.0, 1.0, 1.0)", "vec4(1.0, 0.0, 0.0, 1.0)");
 
 static gtx_shading *shading_of(stage *s, const char *text)
 {
