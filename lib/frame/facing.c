@@ -1,5 +1,6 @@
 /* Triangles of LOD meshes that face the eye, picked for rasterizers in software: from outside at
  * most half of those of a solid do, and vertices and triangles take most of a frame. */
+#include "frame/facing.h"
 #include "frame/frustum.h"
 #include "frame/planner.h"
 
@@ -11,6 +12,14 @@
 /* Normals are in 127ths, and offsets in so many steps of positions times that, rounded down. Half a
  * diagonal of the former is how far they are off, which eyes are off by where they are. */
 static const float one = 127, offset_step = 1024, off = 0.87f;
+
+/* Which vertex a run's indices count from here: the same for as many as 16 bits have indices for,
+ * so that they are one draw. */
+static uint32_t base_of(uint32_t first_vertex, uint32_t vertex_count)
+{
+    enum { GROUP = 1 << 15 };
+    return vertex_count <= GROUP ? first_vertex / GROUP * GROUP : first_vertex;
+}
 
 static gtx_lod_face face_of(const uint8_t *vertices, uint32_t vertex_size, const uint16_t corner[3])
 {
@@ -39,22 +48,48 @@ static gtx_lod_face face_of(const uint8_t *vertices, uint32_t vertex_size, const
  * again. */
 enum { MIN_TRIANGLES = 8192 };
 
+static void find_faces(const gtx_lod_meshes *lods, gtx_lod_level *level)
+{
+    uint32_t t = 0;
+    for (const gtx_lod_run *run = level->runs; t < level->triangle_count; ++run) {
+        const uint32_t base = base_of(run->first_vertex, run->vertex_count);
+        const uint8_t *vertices =
+            lods->vertices + level->vertex_offset + (size_t)base * level->vertex_size;
+        for (; t < run->end; ++t) {
+            uint16_t corner[3];
+            memcpy(corner, lods->indices + level->index_offset + t * sizeof corner, sizeof corner);
+            for (int c = 0; c < 3; ++c)
+                corner[c] = (uint16_t)(corner[c] + run->first_vertex - base);
+            level->faces[t] = face_of(vertices, level->vertex_size, corner);
+        }
+    }
+}
+
+/* Among those of a patch, and of its border, which are drawn alone. What is lit at vertices is so
+ * whichever corner comes first. */
+static void put_in_order(const gtx_lod_meshes *lods, gtx_lod_level *level)
+{
+    gtx_face_order order;
+    gtx_face_order_begin(&order);
+    for (uint32_t i = 0; i < lods->patch_count; ++i) {
+        const uint32_t end[2] = {level->border[i], level->first[i + 1]};
+        uint32_t t = level->first[i];
+        for (int border = 0; border < 2; ++border)
+            for (; t < end[border]; t = end[border])
+                gtx_order_faces(&order, level->faces + t, end[border] - t, level->lit);
+    }
+}
+
 void gtx_lod_find_faces(const gtx_allocator *allocator, gtx_lod_meshes *lods)
 {
     for (uint32_t k = 0; k < lods->level_count; ++k) {
         gtx_lod_level *level = &lods->levels[k];
         if (level->index_size == sizeof(uint16_t) && level->triangle_count >= MIN_TRIANGLES)
             level->faces = gtx_alloc_raw(allocator, level->triangle_count, sizeof *level->faces);
-        uint32_t t = 0;
-        for (const gtx_lod_run *run = level->runs; level->faces && t < level->triangle_count; ++run)
-            for (; t < run->end; ++t) {
-                const size_t first = (size_t)run->first_vertex * level->vertex_size;
-                uint16_t corner[3];
-                memcpy(corner, lods->indices + level->index_offset + t * sizeof corner,
-                       sizeof corner);
-                level->faces[t] = face_of(lods->vertices + level->vertex_offset + first,
-                                          level->vertex_size, corner);
-            }
+        if (level->faces) {
+            find_faces(lods, level);
+            put_in_order(lods, level);
+        }
     }
 }
 
@@ -94,12 +129,16 @@ void gtx_pick_faces(const gtx_draw_call *call, const gtx_lod_level *level, gtx_f
     for (uint32_t i = 0; i < draw->range_count; ++i) {
         gtx_range r = draw->ranges[i], *last = &planner->plan.ranges[ranges];
         const gtx_lod_face *first = level->faces + r.first / 3;
+        const uint32_t base = base_of(r.base_vertex, r.vertex_count);
+        r.vertex_count += r.base_vertex - base;
+        r.base_vertex = base;
         r.first = count;
         r.count = pick(first, r.count / 3, eye, indices + count);
         count += r.count;
-        if (ranges && last[-1].base_vertex == r.base_vertex)
+        if (ranges && last[-1].base_vertex == base) {
             last[-1].count += r.count;
-        else if (r.count)
+            last[-1].vertex_count = r.vertex_count;
+        } else if (r.count)
             planner->plan.ranges[ranges++] = r;
     }
     draw->range_count = ranges;

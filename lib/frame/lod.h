@@ -26,7 +26,7 @@ typedef struct gtx_lod_run {
     uint32_t first_vertex, vertex_count;
 } gtx_lod_run;
 
-/* The plane of a triangle, and its corners, as indices have them. */
+/* The plane of a triangle, and its corners, counted from one vertex for many runs. */
 typedef struct gtx_lod_face {
     int8_t normal[3];
     int16_t offset;
@@ -113,8 +113,9 @@ void gtx_lod_find_openings(const gtx_asset *asset, const gtx_allocator *allocato
                            gtx_lod_meshes *out);
 bool gtx_lod_hides_backs(const gtx_lod_meshes *lods, uint32_t level,
                          const struct gtx_frustum *f);
-/* facing.c: the faces of levels of many triangles that are filled and have indices of 16 bits; none
- * without memory. Whoever submits the model's draws takes indices that they bring along. */
+/* facing.c: the faces of levels of many triangles that are filled and have indices of 16 bits, in
+ * an order of their own within what is drawn of a patch; none without memory. Whoever submits the
+ * model's draws takes indices that they bring along. */
 void gtx_lod_find_faces(const gtx_allocator *allocator, gtx_lod_meshes *out);
 void gtx_lod_free_staging(gtx_lod_meshes *lods, const gtx_allocator *allocator);
 void gtx_lod_free(gtx_lod_meshes *lods, const gtx_allocator *allocator);

@@ -7,11 +7,12 @@ export const facing = ({expect, context, clear, cameraOf, read, covered, apart, 
   async triangles_that_face_away_are_left_out() {
     const gl = context(), geotex = await Geotex.create(gl);
     expect(geotex.software, 'Chromium does not say that it rasterizes in software');
-    let indices = 0;
+    let indices = 0, draws = 0;
     for (const name of ['drawElements', 'drawElementsInstanced']) {
       const call = gl[name];
       gl[name] = (...all) => {
         indices += all[1];
+        ++draws;
         return call.apply(gl, all);
       };
     }
@@ -30,7 +31,7 @@ export const facing = ({expect, context, clear, cameraOf, read, covered, apart, 
         const transform = new THREE.Matrix4().makeShear(0, 0, 0.3 * (i & 1), 0, 0, 0)
             .scale(new THREE.Vector3(side, 1, 1)).elements;
         const pictures = [all, picked].map((model) => {
-          indices = 0;
+          indices = draws = 0;
           clear(gl);
           geotex.draw({view: camera.matrixWorldInverse.elements, projection: projection.elements,
                        width: WIDTH, height: HEIGHT, method: Method.LOD, level: 1},
@@ -43,6 +44,7 @@ export const facing = ({expect, context, clear, cameraOf, read, covered, apart, 
         expect(covered(pictures[0]) > 1000, `view ${i} of ${file} shows nothing`);
         /* Corners are rounded to parts of a pixel: edge on, a triangle may come to face the eye. */
         expect(differ < 1e-4, `view ${i} of ${file}: ${(100 * differ).toFixed(3)} % differ`);
+        expect(draws <= 2, `view ${i} of ${file}: ${draws} draws`); /* of picked ones */
         expect(counts[1] < 0.7 * counts[0], `view ${i} of ${file}: ${counts[1]} of ${counts[0]}`);
       }
       for (const thing of [all, picked, asset])
