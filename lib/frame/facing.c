@@ -10,7 +10,8 @@
 #include <string.h>
 
 /* Normals are in 127ths, and offsets in so many steps of positions times that, rounded down. Half a
- * diagonal of the former is how far they are off, which eyes are off by where they are. */
+ * diagonal of the former is how far they are off, by which what they tell of an eye is, times its
+ * distance. */
 static const float one = 127, offset_step = 1024, off = 0.87f;
 
 /* Which vertex a run's indices count from here: the same for as many as 16 bits have indices for,
@@ -47,6 +48,27 @@ static gtx_lod_face face_of(const uint8_t *vertices, uint32_t vertex_size, const
  * more; at four times the level that it draws is not picked from, and a frame takes half as long
  * again. */
 enum { MIN_TRIANGLES = 8192 };
+
+static void surround(const gtx_lod_meshes *lods, gtx_lod_level *level)
+{
+    const uint8_t *vertex = lods->vertices + level->vertex_offset;
+    const uint8_t *end = vertex + level->vertex_bytes;
+    uint16_t low[3] = {UINT16_MAX, UINT16_MAX, UINT16_MAX}, high[3] = {0, 0, 0}, at[3];
+    float square = 0;
+    for (; vertex < end; vertex += level->vertex_size) {
+        memcpy(at, vertex, sizeof at);
+        for (int k = 0; k < 3; ++k) {
+            low[k] = at[k] < low[k] ? at[k] : low[k];
+            high[k] = at[k] > high[k] ? at[k] : high[k];
+        }
+    }
+    for (int k = 0; k < 3; ++k) {
+        const float half = 0.5f * (float)(high[k] - low[k]);
+        level->faces_middle[k] = (float)low[k] + half;
+        square += half * half;
+    }
+    level->faces_radius = sqrtf(square);
+}
 
 static void find_faces(const gtx_lod_meshes *lods, gtx_lod_level *level)
 {
@@ -87,20 +109,29 @@ void gtx_lod_find_faces(const gtx_allocator *allocator, gtx_lod_meshes *lods)
         if (level->index_size == sizeof(uint16_t) && level->triangle_count >= MIN_TRIANGLES)
             level->faces = gtx_alloc_raw(allocator, level->triangle_count, sizeof *level->faces);
         if (level->faces) {
+            surround(lods, level);
             find_faces(lods, level);
             put_in_order(lods, level);
         }
     }
 }
 
-/* Of an eye in steps of positions, as gtx_frustum has it; gives the number of indices. */
-static uint32_t pick(const gtx_lod_face *face, uint32_t count, const float eye[4], uint16_t *out)
+/* What a face tells at least of an eye that it faces: no face is farther from the eye. */
+static float least_of(const gtx_lod_level *level, const float eye[4])
 {
-    const float middle = 0.5f * UINT16_MAX * eye[3], w = eye[3] * offset_step;
     float square = 0;
-    for (int k = 0; k < 3; ++k)
-        square += (eye[k] - middle) * (eye[k] - middle);
-    const float least = -off * (sqrtf(square) + 1.74f * middle);
+    for (int k = 0; k < 3; ++k) {
+        const float away = eye[k] - eye[3] * level->faces_middle[k];
+        square += away * away;
+    }
+    return -off * (sqrtf(square) + eye[3] * level->faces_radius);
+}
+
+/* Of an eye in steps of positions, as gtx_frustum has it; gives the number of indices. */
+static uint32_t pick(const gtx_lod_face *face, uint32_t count, const float eye[4], float least,
+                     uint16_t *out)
+{
+    const float w = eye[3] * offset_step;
     const uint16_t *begin = out;
     for (const gtx_lod_face *end = face + count; face < end; ++face) {
         const float before = eye[0] * face->normal[0] + eye[1] * face->normal[1] +
@@ -126,6 +157,7 @@ void gtx_pick_faces(const gtx_draw_call *call, const gtx_lod_level *level, gtx_f
     float eye[4] = {0, 0, 0, (float)f.eye[3]};
     for (int k = 0; k < 3; ++k)
         eye[k] = (float)((f.eye[k] - f.eye[3] * (double)level->place[k]) / (double)level->place[3]);
+    const float least = least_of(level, eye);
     for (uint32_t i = 0; i < draw->range_count; ++i) {
         gtx_range r = draw->ranges[i], *last = &planner->plan.ranges[ranges];
         const gtx_lod_face *first = level->faces + r.first / 3;
@@ -133,7 +165,7 @@ void gtx_pick_faces(const gtx_draw_call *call, const gtx_lod_level *level, gtx_f
         r.vertex_count += r.base_vertex - base;
         r.base_vertex = base;
         r.first = count;
-        r.count = pick(first, r.count / 3, eye, indices + count);
+        r.count = pick(first, r.count / 3, eye, least, indices + count);
         count += r.count;
         if (ranges && last[-1].base_vertex == base) {
             last[-1].count += r.count;

@@ -44,6 +44,7 @@ typedef struct gtx_lod_level {
     gtx_lod_run *runs;        /* room for a patch each; indices count from a run's first vertex */
     uint32_t run_count;
     gtx_lod_face *faces;      /* NULL, or all triangles, where what faces the eye is to be picked */
+    float faces_middle[3], faces_radius; /* around them, in steps */
     uint32_t index_size;      /* bytes */
     uint32_t vertex_size;     /* of either kind */
     uint64_t vertex_offset, index_offset;

@@ -40,7 +40,8 @@ static square *make_square(bool lit)
     *level = (gtx_lod_level){.lit = lit, .triangle_count = TRIANGLES, .first = s->first,
                              .border = s->border, .runs = s->runs,
                              .run_count = PATCHES * PATCHES, .index_size = sizeof(uint16_t),
-                             .vertex_size = sizeof(gtx_lod_vertex)};
+                             .vertex_size = sizeof(gtx_lod_vertex),
+                             .vertex_bytes = sizeof s->vertices};
     uint32_t index = 0;
     for (uint32_t p = 0; p < PATCHES * PATCHES; ++p) {
         s->border[p] = p * PATCH_TRIANGLES + INTERIOR;
