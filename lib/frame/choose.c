@@ -1,6 +1,7 @@
 /* How an instance is drawn, as a whole or patch by patch, by what that is thought to cost. */
 #include "frame/frustum.h"
 #include "frame/planner.h"
+#include "frame/techniques.h"
 
 #include "base/error.h"
 
@@ -30,6 +31,11 @@ static const gtx_costs *costs_of(const gtx_draw_call *draw)
 /* Where the nearest corner of the bounds is closer than this fraction of the distance to their
  * middle, the spheres of the patches are looked at instead. */
 static const double near_share = 0.9;
+
+static bool is_by_error(const gtx_view *view)
+{
+    return view->level == 0 && view->viewport_height > 0;
+}
 
 /* The error that an instance is allowed, in object units: at its nearest and its farthest point. */
 typedef struct extent {
@@ -87,20 +93,25 @@ double gtx_allowed_anywhere(const gtx_draw_call *draw, const gtx_model *model,
     return measure(draw, model, placed).nearest;
 }
 
+/* Of a model from where the error allowed, squared, is that of object space. */
+static double pixels_of(const gtx_draw_call *draw, const gtx_lod_meshes *lods, double error)
+{
+    const double allowed = draw->view->max_error > 0 ? draw->view->max_error : 0.5;
+    double square = 0;
+    for (int k = 0; k < 3; ++k)
+        square += pow((double)lods->high[k] - lods->low[k], 2) / 4;
+    return allowed * allowed * square / fmax(error, FLT_MIN);
+}
+
 uint32_t gtx_levels_cast(const gtx_draw_call *draw, const gtx_model *model)
 {
     if (model->bare)
         return 0;
     const gtx_costs *costs = costs_of(draw);
     const gtx_lod_meshes *lods = &model->lods;
-    const double allowed = draw->view->max_error > 0 ? draw->view->max_error : 0.5;
-    double square = 0;
-    for (int k = 0; k < 3; ++k)
-        square += pow((double)lods->high[k] - lods->low[k], 2) / 4;
     for (uint32_t k = 0; k < lods->level_count; ++k) {
         const gtx_lod_level *level = &lods->levels[k], *next = level + (k + 1 < lods->level_count);
-        const double errors = fmax((double)level->error * next->error, FLT_MIN);
-        const double pixels = allowed * allowed * square / errors;
+        const double pixels = pixels_of(draw, lods, (double)level->error * next->error);
         if (costs->cast_patch * model->patch_count + costs->cast_pixel * pixels >=
             costs->lod_triangle * level->triangle_count + costs->lod_pixel * pixels)
             return k;
@@ -132,10 +143,10 @@ double gtx_cast_cost(const gtx_draw_call *draw, uint32_t patches, double pixels)
 }
 
 /* Far levels cannot be mixed with edited patches. */
-static uint32_t usable_levels(const gtx_lod_meshes *lods)
+static uint32_t usable_levels(const gtx_lod_meshes *lods, uint32_t worth)
 {
     uint32_t count = 0;
-    while (count < lods->level_count && !(lods->edited_count && lods->levels[count].far))
+    while (count < worth && !(lods->edited_count && lods->levels[count].far))
         ++count;
     return count;
 }
@@ -147,6 +158,41 @@ static uint32_t levels_within(const gtx_lod_meshes *lods, uint32_t usable, doubl
     while (level < usable && lods->levels[level].error <= error)
         ++level;
     return level;
+}
+
+/* Pixels in which looking maps up takes as long as a triangle. By SwiftShader, a bunny in a page of
+ * 640x480: the level that is lit at its vertices takes 0.6 of what that takes which is just within
+ * 2 pixels, 0.8 of that within 4, and a ninth more than that within 7. At half it is drawn there,
+ * too; at double no more at 4. */
+static const double pixels_a_triangle = 8;
+
+/* Of a level's triangles those that are drawn: half, where what faces the eye is picked. */
+static double triangles_of(const gtx_lod_level *level)
+{
+    return (level->faces ? 0.5 : 1) * level->triangle_count;
+}
+
+/* A level coarser than one that is lit at its vertices has fewer triangles, but maps are looked up
+ * in each of its pixels. Looked for only where triangles are picked, by software. */
+uint32_t gtx_levels_worth(const gtx_draw_call *draw, const gtx_model *model,
+                          const gtx_instance_data *placed)
+{
+    const gtx_lod_meshes *lods = &model->lods;
+    const uint32_t all = lods->level_count;
+    const bool normals_alone = gtx_material_of(model) == MATERIAL_NONE;
+    if (!normals_alone || !is_by_error(draw->view))
+        return all;
+    const extent e = measure(draw, model, placed);
+    const uint32_t level = levels_within(lods, all, e.nearest);
+    uint32_t lit = level;
+    while (lit > 0 && !(lods->levels[lit - 1].lit && lods->levels[lit - 1].faces))
+        --lit;
+    if (lit <= gtx_levels_cast(draw, model))
+        return all;
+    const double pixels = pixels_of(draw, lods, pow((e.nearest + e.farthest) / 2, 2));
+    const double more =
+        triangles_of(&lods->levels[lit - 1]) - triangles_of(&lods->levels[level - 1]);
+    return pixels_a_triangle * more <= pixels ? lit : all;
 }
 
 /* As a whole only where that draws each patch as it would be drawn by itself: a part must not be
@@ -178,13 +224,13 @@ gtx_result gtx_choose(const gtx_draw_call *draw, const gtx_model *model,
     const gtx_lod_meshes *lods = &model->lods;
     const bool only = view->method == GTX_METHOD_AUTO && model->bare && lods->level_count;
     const bool forced = view->method == GTX_METHOD_LOD || only;
-    const bool by_error = view->level == 0 && view->viewport_height > 0;
+    const bool by_error = is_by_error(view);
     if (forced && !lods->level_count)
         return gtx_fail(error, GTX_ERROR_UNSUPPORTED, "the asset has no LOD mesh to be drawn by");
     *out = view->method == GTX_METHOD_GRID ? GTX_DRAW_PATCHES : GTX_DRAW_CAST;
     if (!forced && (view->method != GTX_METHOD_AUTO || !by_error))
         return GTX_OK;
-    const uint32_t usable = usable_levels(lods);
+    const uint32_t usable = usable_levels(lods, gtx_levels_worth(draw, model, placed));
     uint32_t level = view->level < usable ? view->level : usable;
     extent e = {0, 0};
     if (by_error) {

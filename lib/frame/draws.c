@@ -235,13 +235,15 @@ static void draw_blocks(const gtx_draw_call *call, const run *r, uint32_t instan
 }
 
 /* How many levels of the LOD mesh may be mixed with height fields, the finest first. */
-static uint32_t levels_to_mix(const gtx_draw_call *call, const run *r)
+static uint32_t levels_to_mix(const gtx_draw_call *call, const run *r,
+                              const gtx_instance_data *placed)
 {
     const gtx_lod_meshes *lods = &r->model->lods;
     uint32_t count = 0;
     if (call->view->method != GTX_METHOD_AUTO || r->way != GTX_DRAW_PATCHES)
         return 0;
-    while (count < lods->level_count && !lods->levels[count].far)
+    const uint32_t worth = gtx_levels_worth(call, r->model, placed);
+    while (count < worth && !lods->levels[count].far)
         ++count;
     return count;
 }
@@ -254,7 +256,7 @@ static void draw_patches(const gtx_draw_call *call, const run *r, uint32_t insta
     const gtx_lod_meshes *lods = &r->model->lods;
     const gtx_instance_data *placed = &call->planner->instances[instance];
     gtx_occlusion_end(&call->planner->occlusion);
-    gtx_plan_patches(call, r->model, placed, levels_to_mix(call, r), edited_only);
+    gtx_plan_patches(call, r->model, placed, levels_to_mix(call, r, placed), edited_only);
     const bool only_cast = r->way == GTX_DRAW_CAST, by_gpu = call->planner->on_gpu;
     if (!only_cast && by_gpu && gtx_displace_fill(call, r->model, placed))
         draw_blocks(call, r, instance);

@@ -43,6 +43,10 @@ double gtx_allowed_anywhere(const gtx_draw_call *draw, const gtx_model *model,
 /* choose.c: how many levels of the LOD mesh, the finest first, are never drawn, for casting is
  * thought to take less at a size between those where it and the next are just fine enough. */
 uint32_t gtx_levels_cast(const gtx_draw_call *draw, const gtx_model *model);
+/* choose.c: how many levels, the finest first, an instance may be drawn by: where the last of them
+ * is lit at its vertices, coarser ones within the error are thought to take more. */
+uint32_t gtx_levels_worth(const gtx_draw_call *draw, const gtx_model *model,
+                          const gtx_instance_data *placed);
 /* choose.c: what displaced grids of so many triangles are thought to take, over so many pixels; the
  * same where the GPU displaces them; and casting so many patches. */
 double gtx_grid_cost(const gtx_draw_call *draw, uint32_t triangles, double pixels);

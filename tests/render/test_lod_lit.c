@@ -1,6 +1,8 @@
 /* LOD meshes lit at their vertices, and levels that are as near to the source as height fields. */
 #include "pictures.h"
 
+#include "base/alloc.h"
+#include "frame/model.h"
 #include "frame/pipelines.h"
 
 static subject open_sphere(stage *s, lod_looks looks, uint16_t flags)
@@ -162,6 +164,36 @@ static void exact_levels_are_drawn_however_near(void **state)
     }
 }
 
+/* Where what faces the eye is picked: what has many pixels, each of which would look maps up, is
+ * drawn by the finest level instead of one of few triangles. */
+static void the_lit_level_is_drawn_where_it_takes_less(void **state)
+{
+    STAGE_OR_SKIP(state);
+    subject shown = open_sphere(s, LOD_PLAIN, 0);
+    gtx_lod_level *finest = shown.model->lods.levels;
+    gtx_camera camera = camera_around(shown.asset);
+    shown.model->bare = true; /* height fields are none of its ways */
+    for (int i = 0; i < 4; ++i) {
+        const bool picked = i & 1, large = i & 2;
+        gtx_view view = view_of(&camera);
+        view.method = GTX_METHOD_LOD;
+        view.level = 0;
+        view.viewport_height = (large ? 10 : 1) * STAGE_HEIGHT;
+        view.max_error = large ? 500 : 50; /* of the coarsest level */
+        if (picked)
+            finest->faces = gtx_alloc_array(&shown.model->allocator, finest->triangle_count,
+                                            sizeof *finest->faces);
+        const drawn d = draws_of(shown.model, &view);
+        assert_int_equal(d.lit, picked && large);
+        assert_int_equal(d.mapped, !(picked && large));
+        gtx_free_array(&shown.model->allocator, finest->faces, finest->triangle_count,
+                       sizeof *finest->faces);
+        finest->faces = NULL;
+    }
+    shown.model->bare = false;
+    subject_close(s, &shown);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -170,6 +202,7 @@ int main(void)
         cmocka_unit_test(colors_are_looked_up),
         cmocka_unit_test(backs_are_left_out_where_none_shows),
         cmocka_unit_test(exact_levels_are_drawn_however_near),
+        cmocka_unit_test(the_lit_level_is_drawn_where_it_takes_less),
     };
     return cmocka_run_group_tests(tests, open_stage, stage_close);
 }
