@@ -172,6 +172,14 @@ static double triangles_of(const gtx_lod_level *level)
     return (level->faces ? 0.5 : 1) * level->triangle_count;
 }
 
+/* The coarsest of so many levels that is lit at its vertices and picked from, counted from 1. */
+static uint32_t lit_level(const gtx_lod_meshes *lods, uint32_t level)
+{
+    while (level > 0 && !(lods->levels[level - 1].lit && lods->levels[level - 1].faces))
+        --level;
+    return level;
+}
+
 /* A level coarser than one that is lit at its vertices has fewer triangles, but maps are looked up
  * in each of its pixels. Looked for only where triangles are picked, by software. */
 uint32_t gtx_levels_worth(const gtx_draw_call *draw, const gtx_model *model,
@@ -179,14 +187,12 @@ uint32_t gtx_levels_worth(const gtx_draw_call *draw, const gtx_model *model,
 {
     const gtx_lod_meshes *lods = &model->lods;
     const uint32_t all = lods->level_count;
-    const bool normals_alone = gtx_material_of(model) == MATERIAL_NONE;
-    if (!normals_alone || !is_by_error(draw->view))
+    uint32_t lit = lit_level(lods, all);
+    if (!lit || gtx_material_of(model) != MATERIAL_NONE || !is_by_error(draw->view))
         return all;
     const extent e = measure(draw, model, placed);
     const uint32_t level = levels_within(lods, all, e.nearest);
-    uint32_t lit = level;
-    while (lit > 0 && !(lods->levels[lit - 1].lit && lods->levels[lit - 1].faces))
-        --lit;
+    lit = lit_level(lods, level);
     if (lit <= gtx_levels_cast(draw, model))
         return all;
     const double pixels = pixels_of(draw, lods, pow((e.nearest + e.farthest) / 2, 2));
