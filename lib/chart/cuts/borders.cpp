@@ -68,8 +68,8 @@ void move_borders(const Surface &surface, size_t count, Vector<uint32_t> &labels
         const float straightness = refit < REFITS - STRAIGHT_REFITS ? 0 : STRAIGHTNESS;
         auto liking = [&](uint32_t t, uint32_t label) {
             int alike = 0;
-            for (uint32_t n : neighbours[t])
-                alike += n != NO_TRIANGLE && labels[n] == label;
+            for (size_t k = 0; k < 3 && straightness > 0; ++k)
+                alike += neighbours[t][k] != NO_TRIANGLE && labels[neighbours[t][k]] == label;
             return dot(surface.facets[t].normal, proxies[label]) + straightness * float(alike);
         };
         for (int sweep = 0; sweep < SWEEPS; ++sweep) {
@@ -78,7 +78,9 @@ void move_borders(const Surface &surface, size_t count, Vector<uint32_t> &labels
                 uint32_t best = labels[t];
                 float most = liking(t, best);
                 for (uint32_t n : neighbours[t]) {
-                    float like = n == NO_TRIANGLE ? -INFINITY : liking(t, labels[n]);
+                    if (n == NO_TRIANGLE || labels[n] == best)
+                        continue;
+                    const float like = liking(t, labels[n]);
                     if (like > most) {
                         most = like;
                         best = labels[n];
