@@ -55,6 +55,10 @@ typedef struct gtx_model_desc {
     gtx_compression compress;         /* of colours, materials and emission */
     uint32_t compress_normals;        /* 1: of normals too; they deviate by some degrees where the
                                          relief is as fine as the texels */
+    uint32_t light_vertices;          /* 1: LOD meshes that have normals are lit by these alone, at
+                                         their vertices: rasterizers in software take half the time
+                                         for a bunny within a pixel, and are 1.2 dB farther from
+                                         its mesh */
     uint32_t reserved[1];
 } gtx_model_desc;
 

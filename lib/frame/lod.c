@@ -203,7 +203,7 @@ void gtx_lod_measure(const gtx_asset *asset, uint32_t k, const gtx_allocator *al
         if (level->runs[r].vertex_count > MAX_NARROW_VERTICES)
             level->index_size = 4;
     level->vertex_size =
-        gtx_lod_may_be_lit(asset, k, level) || out->patch_count > UINT16_MAX
+        gtx_lod_may_be_lit(asset, k, out) || out->patch_count > UINT16_MAX
             ? sizeof(gtx_lod_vertex)
             : sizeof(gtx_lod_narrow_vertex);
     level->vertex_bytes = count * (uint64_t)level->vertex_size;

@@ -70,6 +70,7 @@ typedef struct gtx_lod_meshes {
     uint32_t *order;          /* of the patches: those seen from the front alone come first */
     uint32_t one_sided;       /* how many */
     bool first_provokes;      /* as told: which vertex gives flat values, also of grids */
+    bool light_vertices;      /* likewise: normals of vertices are enough */
     bool *edited;             /* a patch each: its height field has changed, and it must be cast */
     uint32_t edited_count;
     float low[3], high[3];    /* bounds in object space */
@@ -98,7 +99,7 @@ void gtx_lod_fill(const gtx_asset *asset, uint32_t level, const gtx_allocator *a
 /* lod_normals.c: whether a level may be lit by normals of its vertices; normals made up for the
  * finest level of a file's beginning that has none, as a file has them, else, and without memory,
  * NULL; and of a level that is filled its normals, and whether they are enough. */
-bool gtx_lod_may_be_lit(const gtx_asset *asset, uint32_t level, const gtx_lod_level *of);
+bool gtx_lod_may_be_lit(const gtx_asset *asset, uint32_t level, const gtx_lod_meshes *of);
 uint8_t *gtx_lod_normals(const gtx_asset *asset, uint32_t level, const gtx_lod_mesh *source,
                          const gtx_allocator *allocator);
 void gtx_lod_light(const gtx_asset *asset, uint32_t level, const gtx_lod_mesh *source,

@@ -179,22 +179,29 @@ static double texel_of(const gtx_asset *asset)
     return sqrt(area / texels);
 }
 
+static bool tells_all(const gtx_asset *asset, const gtx_lod_level *level)
+{
+    return level->triangle_count >= least_share * (double)asset->info.source_triangles;
+}
+
 /* What a file's beginning has for maps is made of its finest level, and says no more than this has
  * at its vertices, but more than triangles of coarser ones do: a bunny of 2 pixels' error, by those
  * of the level that is drawn, is 1.8 dB farther from its mesh. Of others coarser levels are seen
  * from so far that maps have to be averaged. */
-bool gtx_lod_may_be_lit(const gtx_asset *asset, uint32_t k, const gtx_lod_level *level)
+bool gtx_lod_may_be_lit(const gtx_asset *asset, uint32_t k, const gtx_lod_meshes *lods)
 {
     const gtx_info *info = &asset->info;
+    const gtx_lod_level *level = &lods->levels[k];
     if (info->has_color || info->has_material || info->has_emission)
         return false;
     gtx_lod_mesh source;
     gtx_get_lod_mesh(asset, k, &source);
     if (asset->bare && !asset->marks)
         return k == 0 || source.normals;
+    if (lods->light_vertices && source.normals && !level->far)
+        return true;
     return k == 0 && !level->far &&
-           (asset->bare ? source.normals != NULL
-                        : level->triangle_count >= least_share * (double)info->source_triangles);
+           (asset->bare ? source.normals != NULL : tells_all(asset, level));
 }
 
 uint8_t *gtx_lod_normals(const gtx_asset *asset, uint32_t k, const gtx_lod_mesh *source,
@@ -217,7 +224,7 @@ void gtx_lod_light(const gtx_asset *asset, uint32_t k, const gtx_lod_mesh *sourc
                    gtx_lod_meshes *lods)
 {
     gtx_lod_level *level = &lods->levels[k];
-    if (!gtx_lod_may_be_lit(asset, k, level))
+    if (!gtx_lod_may_be_lit(asset, k, lods))
         return;
     gtx_lod_vertex *first = vertices_of(lods, level);
     gtx_lod_vertex *end = first + level->vertex_bytes / sizeof *first;
@@ -235,6 +242,7 @@ void gtx_lod_light(const gtx_asset *asset, uint32_t k, const gtx_lod_mesh *sourc
                          : source->normals ? degrees * (double)source->normal_error
                                           : stray_of(asset, lods, level);
     level->lit = stray <= most_degrees;
-    if (level->lit && !asset->bare && (double)level->error <= exact_texels * texel_of(asset))
+    if (level->lit && k == 0 && !asset->bare && tells_all(asset, level) &&
+        (double)level->error <= exact_texels * texel_of(asset))
         level->error = 0;
 }

@@ -173,6 +173,7 @@ static gtx_result begin_parts(making *m, const gtx_jobs *jobs, gtx_error *error)
     if (!gtx_lod_begin(m->asset, &model->allocator, &model->lods))
         return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for the model's LOD mesh");
     model->lods.first_provokes = m->desc->first_provokes;
+    model->lods.light_vertices = m->desc->light_vertices;
     gtx_run_jobs(jobs, model->lods.level_count + PIECES * model->level_count, begin_part, m);
     return gtx_lod_place(&model->allocator, &model->lods, error);
 }

@@ -32,7 +32,8 @@ cook_others := -w -DZSTD_DISABLE_ASM=1 -DDEBUGLEVEL=0 -DXXH_NAMESPACE=ZSTD_
 cook_absent := %/module.cpp lib/image/png_jpeg/% %/geotex_netcdf.c %/netcdf4.cpp lib/image/open.c \
                lib/cook/driver.cpp
 cook_sources := $(filter-out $(cook_absent),$(foreach r,image mesh grid chart bake measure cook, \
-                  $(wildcard lib/$(r)/*.c* lib/$(r)/*/*.c*))) $(wildcard lib/web/cook/*.c*)
+                  $(wildcard lib/$(r)/*.c* lib/$(r)/*/*.c*))) $(wildcard lib/web/cook/*.c*) \
+                  lib/frame/compress_rows.c # which a page's core does without
 cook_objects := $(patsubst %,$(cook_web)/%.o,$(basename $(cook_sources)))
 $(cook_web)/lib/%.o: lib/%.cpp $(cook_src)/.fetched
 	@mkdir -p $(@D)

@@ -192,14 +192,14 @@ WEB_API const float *gtxw_raycast(const gtx_caster *caster, const gtx_asset *ass
 
 /* ---- models ---- */
 
-/* Maps are the asset's, which stays until all is sent: gtxw_model_sent. With `picked` draws leave
- * out triangles that face away. */
-WEB_API gtx_model *gtxw_model_prepare(const gtx_asset *asset, int picked)
+/* Maps are the asset's, which stays until all is sent: gtxw_model_sent. Of rasterizers in software
+ * LOD meshes are lit at their vertices, and triangles that face away are left out. */
+WEB_API gtx_model *gtxw_model_prepare(const gtx_asset *asset, int software)
 {
-    const gtx_model_desc desc = {.borrow = 1};
+    const gtx_model_desc desc = {.borrow = 1, .light_vertices = software != 0};
     gtx_model *model = NULL;
     gtx_model_prepare(asset, &desc, &model, gtxw_begin());
-    if (model && picked)
+    if (model && software)
         gtx_lod_find_faces(&model->allocator, &model->lods);
     return model;
 }

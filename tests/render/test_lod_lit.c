@@ -1,6 +1,7 @@
 /* LOD meshes lit at their vertices, and levels that are as near to the source as height fields. */
 #include "pictures.h"
 
+#include "asset/patch.h"
 #include "base/alloc.h"
 #include "frame/model.h"
 #include "frame/pipelines.h"
@@ -194,6 +195,51 @@ static void the_lit_level_is_drawn_where_it_takes_less(void **state)
     subject_close(s, &shown);
 }
 
+/* Coarser levels of a whole model by the normals of their vertices, where the host asks for it. */
+static void coarse_levels_are_lit_where_asked(void **state)
+{
+    STAGE_OR_SKIP(state);
+    static lod_level made[2];
+    static uint8_t codes[2][2 * LOD_MAX_VERTICES];
+    gtx_lod_mesh lods[2];
+    gtx_asset *sphere = fixture_sphere(radius, TEXELS, 8);
+    for (uint32_t k = 0; k < 2; ++k) {
+        gtx_lod_mesh *lod = &made[k].lod;
+        make_lod_level(gtx_patches(sphere), 6, radius, LOD_FINEST >> k, &made[k]);
+        for (uint32_t v = 0; v < lod->vertex_count; ++v) {
+            float n[3];
+            for (uint32_t c = 0; c < 3; ++c)
+                n[c] = lod->origin[c] + lod->step * made[k].positions[3 * v + c];
+            gtx_encode_octahedral(n, codes[k] + 2 * v);
+        }
+        lod->normals = codes[k];
+        lod->flags |= GTX_LOD_NORMALS;
+        lods[k] = *lod;
+    }
+    subject shown = subject_open(s, with_lod_meshes(sphere, lods, 2, 0, LOD_PLAIN));
+    gtx_camera camera = camera_around(shown.asset);
+    gtx_view view = view_of(&camera);
+    view.method = GTX_METHOD_LOD;
+    view.level = 2;
+    assert_int_equal(draws_of(shown.model, &view).lit, 0);
+    const gtx_model_desc desc = {.light_vertices = 1};
+    gtx_instance lit = shown.instance;
+    gtx_model *model;
+    gtx_error error = {0};
+    uint32_t done;
+    must(gtx_model_prepare(shown.asset, &desc, &model, &error), &error);
+    must(gtx_model_upload(s->renderer, model, 0, &done, &error), &error);
+    lit.model = model;
+    assert_int_equal(draws_of(model, &view).lit, 1);
+    assert_int_equal(draws_of(model, &view).mapped, 0);
+    draw(s, &view, GTX_METHOD_CAST, &shown.instance, 1, &first);
+    draw(s, &view, GTX_METHOD_LOD, &lit, 1, &second);
+    const difference d = compare(&first, &second);
+    assert_true(d.both > 5000 && d.mean < 1.5);
+    gtx_model_destroy(s->renderer, model);
+    subject_close(s, &shown);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -203,6 +249,7 @@ int main(void)
         cmocka_unit_test(backs_are_left_out_where_none_shows),
         cmocka_unit_test(exact_levels_are_drawn_however_near),
         cmocka_unit_test(the_lit_level_is_drawn_where_it_takes_less),
+        cmocka_unit_test(coarse_levels_are_lit_where_asked),
     };
     return cmocka_run_group_tests(tests, open_stage, stage_close);
 }

@@ -18,9 +18,9 @@ const {page, address, close} = await open(join(app, 'node_modules'), {
 await page.setCacheEnabled(false);
 page.on('console', (m) => console.error(m.text()));
 try {
-  console.log('| model | file | KB | read, KB | first picture, s | full, s | longest task, ms | frame, ms |' +
+  console.log('| model | file | KB | read, KB | first picture, s | full, s | longest task, ms | frame, ms: full | all bytes |' +
               ' memory, MB | IoU | PSNR, dB: full | all bytes |');
-  console.log('|---|---|---|---|---|---|---|---|---|---|---|---|');
+  console.log('|---|---|---|---|---|---|---|---|---|---|---|---|---|');
   for (const name of names) {
     let least = Infinity;
     for (const [title, [kind, end, error]] of Object.entries(KINDS)) {
@@ -35,13 +35,14 @@ try {
       const seconds = (ms) => (ms / 1000).toFixed(3);
       console.log(`| ${name} | ${title} | ${Math.round(size / 1000)} |` +
                   ` ${Math.round((m.bytes ?? size) / 1000)} | ${seconds(m.first)} | ${seconds(m.full)} |` +
-                  ` ${m.task.toFixed(0)} | ${m.frame.toFixed(1)} | ${(m.memory / 1e6).toFixed(1)} |` +
+                  ` ${m.task.toFixed(0)} | ${m.frame.toFixed(1)} | ${m.wholeFrame?.toFixed(1) ?? ''} |` +
+                  ` ${(m.memory / 1e6).toFixed(1)} |` +
                   ` ${m.iou.toFixed(4)} | ${m.psnr?.toFixed(1) ?? ''} | ${m.wholePsnr?.toFixed(1) ?? ''} |`);
       const picture = await page.evaluate(() => shot());
       await writeFile(join(folder, `${name}-${kind}-${error ?? 0}.png`),
                       Buffer.from(picture.slice(picture.indexOf(',') + 1), 'base64'));
     }
-    console.log(`| ${name} | a ball of as many pixels | | | | | | ${least.toFixed(1)} | | | | |`);
+    console.log(`| ${name} | a ball of as many pixels | | | | | | ${least.toFixed(1)} | | | | | |`);
   }
 } finally {
   await close();
