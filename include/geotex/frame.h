@@ -53,12 +53,9 @@ typedef struct gtx_model_desc {
     uint32_t first_provokes;          /* provoking vertex of flat attributes: 1 = the first, as in
                                          all APIs but OpenGL; 0 = the last */
     gtx_compression compress;         /* of colours, materials and emission */
-    uint32_t compress_normals;        /* 1: of normals too; they deviate by some degrees where the
-                                         relief is as fine as the texels */
-    uint32_t light_vertices;          /* 1: LOD meshes that have normals are lit by these alone, at
-                                         their vertices: rasterizers in software take half the time
-                                         for a bunny within a pixel, and are 1.2 dB farther from
-                                         its mesh */
+    uint32_t compress_normals;        /* 1: of normals too, which deviate by some degrees */
+    uint32_t light_vertices;          /* 1: LOD meshes that have normals are lit by these: half the
+                                         time in software, 1.2 dB farther from a bunny's mesh */
     uint32_t reserved[1];
 } gtx_model_desc;
 
@@ -76,11 +73,10 @@ GTX_API gtx_result gtx_model_prepare(const gtx_asset *asset, const gtx_model_des
  * `compress` is NONE), and those of gtx_model_prepare; the asset is then unchanged. */
 GTX_API gtx_result gtx_add_blocks(gtx_asset *asset, const gtx_model_desc *desc, gtx_error *error);
 
-/* Bytes on the GPU: `color` is of colours, materials and emission, `geometry` of all else. */
 typedef struct gtx_model_size {
-    uint64_t geometry, color;
+    uint64_t geometry, color; /* color: of colours, materials and emission */
 } gtx_model_size;
-/* Known from gtx_model_prepare on. Zeros for NULL. */
+/* Bytes on the GPU, known from gtx_model_prepare on. Zeros for NULL. */
 GTX_API gtx_model_size gtx_model_gpu_size(const gtx_model *model);
 
 /* The textures of a model, by their binding in shaders. */
@@ -132,8 +128,8 @@ typedef struct gtx_texture {
     const void *texels[GTX_MAX_TEXTURE_LEVELS];
 } gtx_texture;
 
-/* Gives a texture and returns 1. A map that is constant has a single texel. Returns 0 and gives
- * zeros where the model has none: shaders do not read it, so any texture may be bound. */
+/* Gives a texture, of a constant map a single texel, and returns 1; or zeros and 0 where the model
+ * has none: shaders do not read it, so any may be bound. */
 GTX_API uint32_t gtx_model_texture(const gtx_model *model, gtx_slot slot, gtx_texture *out);
 
 /* Vertex and index buffers, and the layout of a vertex: attribute 0; attribute 1. The first four
