@@ -40,6 +40,19 @@ static ZSTD_compressionParameters parameters_of(int level, uint64_t size)
     return out;
 }
 
+/* How zstd finds matches in over 16 KB depends on whether it was compiled with vectors; told to
+ * do as with them it gives the same bytes on all processors. Before 1.5.2 there was no choice. */
+static bool is_alike(ZSTD_CCtx *context, const ZSTD_compressionParameters *p)
+{
+#if ZSTD_VERSION_NUMBER >= 10502
+    const int rows = p->windowLog > 14 ? ZSTD_ps_enable : ZSTD_ps_disable;
+    return !ZSTD_isError(ZSTD_CCtx_setParameter(context, ZSTD_c_useRowMatchFinder, rows));
+#else
+    (void)context, (void)p;
+    return true;
+#endif
+}
+
 size_t gtx_encoder_size(int level, uint64_t size)
 {
     return ZSTD_estimateCCtxSize_usingCParams(parameters_of(level, size));
@@ -91,10 +104,11 @@ size_t gtx_encode_section(const gtx_encoder *encoder, const gtx_section *section
     ZSTD_CCtx *context = ZSTD_initStaticCCtx(encoder->memory, encoder->size);
     if (!context || size < 2)
         return 0;
-    const unsigned shortest = parameters_of(encoder->level, size).minMatch;
+    const ZSTD_compressionParameters p = parameters_of(encoder->level, size);
     if (ZSTD_isError(ZSTD_CCtx_reset(context, ZSTD_reset_session_and_parameters)) ||
         ZSTD_isError(ZSTD_CCtx_setParameter(context, ZSTD_c_compressionLevel, encoder->level)) ||
-        ZSTD_isError(ZSTD_CCtx_setParameter(context, ZSTD_c_minMatch, (int)shortest)))
+        ZSTD_isError(ZSTD_CCtx_setParameter(context, ZSTD_c_minMatch, (int)p.minMatch)) ||
+        !is_alike(context, &p))
         return 0;
     const size_t written = ZSTD_compress2(context, out, size - 1, data, size);
     return ZSTD_isError(written) ? 0 : written;

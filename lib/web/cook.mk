@@ -81,9 +81,6 @@ $(cook_parts): $(cook_web)/src/%.o: $(cook_src)/.fetched
 	$(Q)f=$$(ls $(cook_src)/$*.c*); case $$f in *.c) how='emcc';; *) how='em++ -std=c++17';; esac; \
 	  NODE_PATH=/usr/share/nodejs $$how $(cook_flags) $(cook_others) -c $$f -o $@
 
-# zstd looks for matches in another way where it has vectors: so all have the bytes of the command.
-$(filter $(cook_web)/src/libzstd/%,$(cook_parts)): cook_others += -msimd128 -msse2
-
 cook_methods := HEAPU8 UTF8ToString stringToUTF8 lengthBytesUTF8
 $(cook_web)/core.a: $(cook_objects) $(cook_parts)
 	$(Q)rm -f $@ && emar qcs $@ $^
