@@ -177,6 +177,11 @@ const ways = {
   },
 };
 
+function medianFrame(object) {
+  const times = Array.from({length: FRAMES}, () => frame(object));
+  return times.sort((a, b) => a - b)[FRAMES >> 1];
+}
+
 /* The frame of a ball of few triangles that covers as many pixels: what three takes to shade these. */
 function ballFrame(outline) {
   const covered = (p) => compare(p, p).shown, mesh = new THREE.Mesh(
@@ -186,9 +191,9 @@ function ballFrame(outline) {
     frame(mesh);
     mesh.scale.multiplyScalar(Math.sqrt(covered(outline) / covered(picture())));
   }
-  const times = Array.from({length: FRAMES}, () => frame(mesh));
+  const least = medianFrame(mesh);
   mesh.geometry.dispose();
-  return times.sort((a, b) => a - b)[FRAMES >> 1];
+  return least;
 }
 
 /* Loaded twice on the line, so that modules, workers and shaders are there the second time: those of
@@ -212,14 +217,10 @@ window.measure = async (kind, url, bits, maxError, mesh) => {
   const {object, pictures, close} = all;
   const end = pictures[pictures.length - 1];
   last = renderer.domElement.toDataURL('image/png');
-  const median = () => {
-    const times = Array.from({length: FRAMES}, () => frame(object));
-    return times.sort((a, b) => a - b)[FRAMES >> 1];
-  };
-  const shown = median();
+  const shown = medianFrame(object);
   await all.complete?.();
   frame(object);
-  const final = picture(), whole = all.complete && median();
+  const final = picture(), whole = all.complete && medianFrame(object);
   /* The first picture from which on none differs from the last one, after which nothing is asked for. */
   let full = pictures.length;
   while (full && compare(pictures[full - 1].picture, end.picture).apart <= MAX_APART)
