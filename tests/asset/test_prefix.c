@@ -60,7 +60,7 @@ static void check_golden(const golden *g)
         gtx_error error = {0};
         gtx_info info = {0};
         if (open_prefix(file, size, NULL, &prefix, &asset, &error))
-            fail_msg("%zu of %s: %s", size, g->name, error.message);
+            fail_msg("%u of %s: %s", (unsigned)size, g->name, error.message);
         const size_t table = GTX_HEADER_SIZE + GTX_ENTRY_SIZE * sections;
         assert_int_equal(prefix.file_size, size < table ? 0 : file.size);
         assert_true(size == file.size ? !prefix.needed : prefix.needed > size);
