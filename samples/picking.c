@@ -41,12 +41,10 @@ static gtx_result load(const gtx_host_gl *gl, gtx_host_load loader, void *user, 
     gtx_get_info(asset, &info);
     gtx_close(asset); /* neither model nor caster keeps a reference to it */
     gtx_camera *camera = &p->show.camera;
-    for (int k = 0; k < 3; ++k)
-        camera->target[k] = (info.bounds_min[k] + info.bounds_max[k]) / 2;
-    camera->radius = (info.bounds_max[0] - info.bounds_min[0]) / 2;
+    gtx_camera_frame(camera, info.bounds_min, info.bounds_max);
     camera->azimuth = -20;
     camera->elevation = 25;
-    camera->distance = 3;
+    camera->distance = 2.2f;
     return GTX_OK;
 }
 
@@ -104,7 +102,7 @@ static gtx_result draw(const gtx_host_gl *gl, const float view[16], const float 
     gtx_raycast(p->caster, &ray, &hit, 1, 0); /* the asset stands untransformed in the world */
     if (!isinf(hit.t)) {
         float pin[16];
-        place_pin(&ray, &hit, 0.35f * p->show.camera.radius, pin);
+        place_pin(&ray, &hit, 0.2f * p->show.camera.radius, pin);
         gtx_polygons_draw(gl, &p->program, &p->pin, pin, &v);
     }
     return result;
